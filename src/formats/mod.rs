@@ -1,0 +1,1 @@
+//! Bytes ↔ geometry: what leaves the loft as a file.

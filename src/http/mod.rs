@@ -1,0 +1,1 @@
+//! The HTTP contract: axum router, one file a resource.

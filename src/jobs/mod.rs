@@ -1,0 +1,1 @@
+//! The durable queue: state machine, store, workers.

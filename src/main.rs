@@ -1,0 +1,3 @@
+//! The `mouldloft` programme: command line in, [`mouldloft::app`] out.
+
+fn main() {}
