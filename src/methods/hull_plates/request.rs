@@ -94,11 +94,23 @@ pub struct Options {
     /// in [0, 20].
     pub max_extension_percent: f64,
     /// Least distance of the regression curve from the plate, in ruling
-    /// lengths, as percent, in [1, 50]; the default 100/7 bounds the speeds of
-    /// a ruling's two ends within 1/8..8.
-    pub min_clearance_percent: f64,
+    /// lengths, as percent, in [1, 50]. `None`: 100/7 where boundaries stay
+    /// (speeds of a ruling's two ends within 1/8..8), 5 where they may move by
+    /// a tolerance (1/21..21).
+    pub min_clearance_percent: Option<f64>,
     /// Which algorithm.
     pub solver: Solver,
+}
+
+impl Options {
+    /// The clearance asked for, percent of a ruling's length.
+    #[must_use]
+    pub fn clearance_percent(&self) -> f64 {
+        self.min_clearance_percent.unwrap_or(match self.boundary {
+            Boundary::Tolerance(_) => 5.0,
+            Boundary::Exact | Boundary::Auto => 100.0 / 7.0,
+        })
+    }
 }
 
 impl Default for Options {
@@ -112,7 +124,7 @@ impl Default for Options {
             ends: Ends::Fan,
             max_fan_percent: 20.0,
             max_extension_percent: 6.0,
-            min_clearance_percent: 100.0 / 7.0,
+            min_clearance_percent: None,
             solver: Solver::Own,
         }
     }

@@ -1,0 +1,199 @@
+//! Boundaries that may move within a tolerance: paths and displacements of
+//! all plates are solved together, so that a chine stays one curve for both
+//! of its plates.
+//!
+//! The tolerance is a hard bound by construction ([`super::movable`]). Within
+//! it the moves are the least that bring the twist down to a target: the
+//! weight of each coefficient's move is renewed as 1/|d| (iteratively
+//! reweighted least squares), which concentrates the moves where they are
+//! needed instead of spreading a little everywhere.
+
+use super::exact::{Rulings, end_at_tips, weights};
+use super::model::{Model, PlateSpec};
+use super::movable::Movable;
+use super::profile::Profile;
+use super::task::{Limits, Pins};
+use crate::methods::FitError;
+use crate::solver::levenberg_marquardt::{self as lm, Settings};
+use crate::solver::{Control, Report};
+use nalgebra::Vector3;
+
+/// What is asked of a relaxed fit.
+#[derive(Debug, Clone)]
+pub(super) struct Task<'a> {
+    pub(super) profiles: &'a [Profile],
+    pub(super) limits: Limits,
+    pub(super) pins: &'a [Pins],
+    /// y of the plane of symmetry, unit scale.
+    pub(super) centreline: f64,
+    /// Twist to aim at, radians: below it moves count more than twist.
+    pub(super) target: f64,
+    /// Rounds of renewing the weights of moves and the samples.
+    pub(super) rounds: usize,
+}
+
+/// A relaxed fit.
+#[derive(Debug, Clone)]
+pub(super) struct Relaxed {
+    pub(super) movables: Vec<Movable>,
+    /// Displacement coefficients of each profile.
+    pub(super) displacements: Vec<Vec<Vector3<f64>>>,
+    /// Path unknowns of each plate.
+    pub(super) paths: Vec<Vec<f64>>,
+    pub(super) twist_max: f64,
+    pub(super) iterations: usize,
+    pub(super) last: Option<Report>,
+}
+
+/// Knot spans of a displacement.
+const SPANS: usize = 64;
+/// Excess over the target counts so much more than the mean that the target
+/// acts as a bound.
+const CEILING_WEIGHT: f64 = 30.0;
+const TWIST_WEIGHT: f64 = 0.1;
+/// Weight of moves of the size of the tolerance against twist of the target;
+/// tried from 1 to 10, ten moves least at the same twist.
+const MOVE_WEIGHT: f64 = 10.0;
+/// Weight of their second differences: enough against ripple from coefficient
+/// to coefficient, too little to spread a move.
+const FAIRNESS: f64 = 0.02;
+/// Weight of the bound on moves, in the same measure.
+const BOUND_WEIGHT: f64 = 100.0;
+/// Limits of one round.
+const ITERATIONS: usize = 40;
+const REDUCTION: f64 = 1e-3;
+/// Between samples a twist above this many targets is a peak to look at.
+const PEAK: f64 = 2.0;
+/// Rounding of the paths' corners, as arc-length fraction.
+const ROUNDING: f64 = 0.01;
+/// Moves below this share of the tolerance all count the same.
+const NEGLIGIBLE_MOVE: f64 = 0.02;
+
+/// Moves the boundaries of all plates by at most `tolerance` (unit scale),
+/// from their exact rulings.
+///
+/// # Errors
+/// [`FitError::Stopped`]; [`FitError::Numerical`] if a profile has no splines
+/// to move on.
+pub(super) fn solve(
+    task: &Task<'_>,
+    start: &[Rulings],
+    tolerance: f64,
+    control: &dyn Control,
+) -> Result<Relaxed, FitError> {
+    let movables = task
+        .profiles
+        .iter()
+        .enumerate()
+        .map(|(k, p)| Movable::new(p, SPANS, tolerance, (task.centreline, meets(start, k))))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|e| FitError::Numerical(e.to_string()))?;
+    let plates = start
+        .iter()
+        .zip(task.pins)
+        .enumerate()
+        .map(|(i, (rulings, pins))| PlateSpec {
+            profiles: [i, i + 1],
+            shape: rulings.shape.clone().rounded(ROUNDING),
+            pins: pins.clone(),
+            speeds: rulings.speeds,
+            tips: rulings.tips,
+        })
+        .collect();
+    let mut model = Model::new(
+        task.profiles,
+        plates,
+        movables,
+        &|k, s| place(start, k, s),
+        weights(&task.limits),
+    );
+    let paths: Vec<Vec<f64>> = start.iter().map(|r| r.y.clone()).collect();
+    let moves: Vec<Vec<f64>> = model
+        .movables
+        .iter()
+        .map(|m| vec![0.0; m.unknowns()])
+        .collect();
+    let mut x = model.gather(&paths, &moves);
+    model.weights.ceiling = task.target;
+    model.weights.ceiling_weight = CEILING_WEIGHT;
+    model.weights.twist = TWIST_WEIGHT;
+    model.weights.move_bound = BOUND_WEIGHT * task.target;
+    let unit = task.target / tolerance;
+    let (mut iterations, mut last) = (0, None);
+    for _ in 0..task.rounds {
+        reweigh(&mut model, &x, unit, tolerance);
+        let settings = Settings {
+            iterations: ITERATIONS,
+            reduction: REDUCTION,
+            ..Settings::default()
+        };
+        let report = lm::minimize(&model, &mut x, &settings, control)?;
+        iterations += report.iterations;
+        for p in 0..model.plates.len() {
+            let peaks = model.peaks_between(&x, p, PEAK * model.weights.ceiling);
+            if !peaks.is_empty() {
+                model.plates[p].shape = model.plates[p].shape.with_more(&peaks);
+            }
+        }
+        last = Some(report);
+    }
+    let paths: Vec<Vec<f64>> = (0..start.len())
+        .map(|p| {
+            let mut y = model.path_of(&x, p);
+            end_at_tips(&mut y, start[p].tips);
+            y
+        })
+        .collect();
+    let moves: Vec<Vec<f64>> = (0..model.movables.len())
+        .map(|k| model.movables[k].bounded(&model.moves_of(&x, k)))
+        .collect();
+    let x = model.gather(&paths, &moves);
+    Ok(Relaxed {
+        displacements: model.displacements(&x),
+        paths,
+        twist_max: (0..start.len())
+            .map(|p| model.twist_max_between(&x, p))
+            .fold(0.0, f64::max),
+        movables: model.movables,
+        iterations,
+        last,
+    })
+}
+
+/// At which ends profile `k` meets a neighbour.
+fn meets(start: &[Rulings], k: usize) -> [bool; 2] {
+    let plates = [k.checked_sub(1), Some(k)].into_iter().flatten();
+    let tips = plates.filter_map(|i| start.get(i)).map(|r| r.tips);
+    tips.fold([false; 2], |a, b| [a[0] || b[0], a[1] || b[1]])
+}
+
+/// Where along the paths of its plates the point `s` of profile `k` is used,
+/// in the mean.
+fn place(start: &[Rulings], k: usize, s: f64) -> f64 {
+    let before = k
+        .checked_sub(1)
+        .map(|i| start[i].shape.place_of(&start[i].y, 1, s));
+    let behind = start.get(k).map(|r| r.shape.place_of(&r.y, 0, s));
+    match (before, behind) {
+        (Some(a), Some(b)) => 0.5 * (a + b),
+        (a, b) => a.or(b).unwrap_or(s),
+    }
+}
+
+fn reweigh(model: &mut Model<'_>, x: &[f64], unit: f64, tolerance: f64) {
+    let displacements = model.displacements(x);
+    let moved =
+        x.iter().any(|v| *v != 0.0) && displacements.iter().flatten().any(|d| d.norm() > 0.0);
+    for (weights, d) in model.move_weights.iter_mut().zip(&displacements) {
+        let share = (1.0 / d.len() as f64).sqrt();
+        for (weight, d) in weights.iter_mut().zip(d) {
+            let factor = if moved {
+                (1.0 / (d.norm() / tolerance + NEGLIGIBLE_MOVE)).sqrt()
+            } else {
+                1.0
+            };
+            *weight = MOVE_WEIGHT * unit * share * factor;
+        }
+    }
+    model.weights.move_fairness = FAIRNESS * unit / (displacements[0].len() as f64).sqrt();
+}
