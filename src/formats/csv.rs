@@ -1,0 +1,155 @@
+//! The ruling table: one row a ruling, as RFC 4180 comma-separated values.
+//!
+//! Numbers are written with as many digits as it takes to read the same bits
+//! back. A flat place has no bend radius: its field is empty. Spreadsheets run
+//! text that begins with `=`, `+`, `-` or `@` as a formula, so such a plate
+//! name gets a leading apostrophe.
+
+use super::plates::{HullDrawing, RulingLine};
+
+/// RFC 4180 §2: records end in CR LF.
+const END_OF_RECORD: &str = "\r\n";
+
+/// One record a ruling below one header record that carries the units; plates
+/// and rulings in the order of the drawing, rulings counted from 1.
+pub fn ruling_table(hull: &HullDrawing) -> String {
+    let mut table = header(&hull.units);
+    for plate in &hull.plates {
+        let name = field(&harmless(&plate.name));
+        for (index, ruling) in plate.rulings.iter().enumerate() {
+            table.push_str(&record(&name, index + 1, ruling));
+        }
+    }
+    table
+}
+
+/// The first record: a name for each column with its unit.
+fn header(units: &str) -> String {
+    let lengths = |name: &str| field(&format!("{name} ({units})"));
+    let columns = [
+        "plate".to_owned(),
+        "ruling".to_owned(),
+        "u".to_owned(),
+        lengths("from_x"),
+        lengths("from_y"),
+        lengths("from_z"),
+        lengths("to_x"),
+        lengths("to_y"),
+        lengths("to_z"),
+        lengths("length"),
+        "twist (deg)".to_owned(),
+        lengths("bend_radius_from"),
+        lengths("bend_radius_to"),
+    ];
+    columns.join(",") + END_OF_RECORD
+}
+
+/// One ruling, its plate's name already quoted.
+fn record(plate: &str, number: usize, ruling: &RulingLine) -> String {
+    let RulingLine {
+        u,
+        from,
+        to,
+        twist_deg,
+        bend_radius_from,
+        bend_radius_to,
+    } = ruling;
+    let length = (to - from).norm();
+    let numbers = [
+        *u,
+        from.x,
+        from.y,
+        from.z,
+        to.x,
+        to.y,
+        to.z,
+        length,
+        *twist_deg,
+        *bend_radius_from,
+        *bend_radius_to,
+    ];
+    let fields: Vec<String> = numbers.iter().map(|n| number_field(*n)).collect();
+    format!("{plate},{number},{}{END_OF_RECORD}", fields.join(","))
+}
+
+/// Shortest text that reads back as the same number; empty when there is none.
+fn number_field(number: f64) -> String {
+    if number.is_finite() {
+        format!("{number}")
+    } else {
+        String::new()
+    }
+}
+
+/// Quotes a text where the format demands it (RFC 4180 §2.5–2.7).
+fn field(text: &str) -> String {
+    if text.contains(['"', ',', '\r', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
+/// Keeps a spreadsheet from taking a user's name for a formula.
+fn harmless(text: &str) -> String {
+    if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        format!("'{text}")
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plates::PlateDrawing;
+    use super::*;
+    use nalgebra::Point3;
+
+    fn hull(name: &str, radius: f64) -> HullDrawing {
+        let ruling = RulingLine {
+            u: 0.1,
+            from: Point3::new(1.0, 2.0, 3.0),
+            to: Point3::new(4.0, 6.0, 3.0),
+            twist_deg: -1.25,
+            bend_radius_from: radius,
+            bend_radius_to: 1.0 / 3.0,
+        };
+        HullDrawing {
+            title: "t".into(),
+            units: "ft".into(),
+            twist_limit_deg: 6.0,
+            plates: vec![PlateDrawing {
+                name: name.into(),
+                rulings: vec![ruling],
+                within_limits: true,
+            }],
+            profiles: Vec::new(),
+            verdict: String::new(),
+            summary: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_row_carries_the_ruling_and_its_length() {
+        let table = ruling_table(&hull("deck – chine", 12.5));
+        let rows: Vec<&str> = table.split("\r\n").collect();
+        assert!(rows[0].starts_with("plate,ruling,u,from_x (ft)"));
+        assert_eq!(
+            rows[1],
+            "deck – chine,1,0.1,1,2,3,4,6,3,5,-1.25,12.5,0.3333333333333333"
+        );
+        assert_eq!(rows[2], "", "the last record ends too");
+        assert_eq!(rows[0].matches(',').count(), rows[1].matches(',').count());
+    }
+
+    #[test]
+    fn a_flat_place_has_no_radius() {
+        assert!(ruling_table(&hull("a", f64::INFINITY)).contains("-1.25,,0.33"));
+    }
+
+    #[test]
+    fn names_are_quoted_and_disarmed() {
+        assert!(ruling_table(&hull("a, \"b\"", 1.0)).contains("\"a, \"\"b\"\"\",1,"));
+        assert!(ruling_table(&hull("=1+1", 1.0)).contains("'=1+1,1,"));
+    }
+}

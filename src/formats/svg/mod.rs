@@ -1,0 +1,202 @@
+//! The lines plan: profile, plan and body view to one scale, the rulings
+//! coloured by twist, the limit marked in the legend, the verdict in words.
+//!
+//! A self-contained SVG 1.1 page, A4 wide: no script, no style sheet, no
+//! reference to anything outside. x runs to the right, z up, y up in the plan
+//! and to the right in the body view.
+//!
+//! Limits: rulings that would run together on paper are thinned out (never a
+//! plate's worst); plates are drawn as wires, so in the body view fore and aft
+//! body overlap.
+
+mod canvas;
+mod colour;
+mod layout;
+mod legend;
+mod text;
+mod views;
+
+use super::plates::{HullDrawing, bounds};
+use canvas::{Anchor, Canvas, Stroke, TextStyle};
+use layout::{MARGIN, PAGE_WIDTH};
+use views::{GREY, INK};
+
+/// Height of the title's type, mm.
+const TITLE_TYPE: f64 = 6.0;
+/// Height of the sentences' type, mm.
+const SENTENCE_TYPE: f64 = 3.2;
+/// Distance of the sentences' base lines, mm.
+const SENTENCE_LINE: f64 = 4.8;
+/// Sentences beyond this number of lines are cut: a page, not a book.
+const MOST_LINES: usize = 60;
+
+/// The whole page.
+pub fn lines_plan(hull: &HullDrawing) -> String {
+    let mut canvas = Canvas::default();
+    let mut y = heading(&mut canvas, hull);
+    if let Some(corners) = bounds(hull) {
+        let layout = layout::arrange(corners, y + 9.0);
+        for view in &layout.views {
+            views::draw(&mut canvas, hull, &layout, view);
+        }
+        let bottom = layout
+            .views
+            .iter()
+            .map(layout::View::bottom)
+            .fold(y, f64::max);
+        y = legend::draw(&mut canvas, hull, bottom + 13.0, layout.views[0].scale);
+    }
+    y = sentences(&mut canvas, &hull.summary, y + 7.0);
+    canvas.finish(
+        [PAGE_WIDTH, (y + MARGIN - SENTENCE_LINE).ceil()],
+        &hull.title,
+    )
+}
+
+/// Title and verdict; returns the last base line, mm.
+fn heading(canvas: &mut Canvas, hull: &HullDrawing) -> f64 {
+    let room = PAGE_WIDTH - 2.0 * MARGIN;
+    let mut y = MARGIN + TITLE_TYPE - 1.5;
+    let style = TextStyle {
+        size: TITLE_TYPE,
+        colour: INK,
+        anchor: Anchor::Start,
+        bold: true,
+    };
+    // Bold type runs a tenth wider than the estimate.
+    canvas.text(
+        [MARGIN, y],
+        style,
+        &text::clip(&hull.title, TITLE_TYPE, room * 0.9),
+    );
+    y += 6.5;
+    let good = hull.plates.iter().all(|p| p.within_limits);
+    let colour = if good { "#1a7f4b" } else { colour::ABOVE_LIMIT };
+    canvas.circle(
+        [MARGIN + 1.4, y - 1.25],
+        1.4,
+        colour,
+        Stroke { colour, width: 0.1 },
+    );
+    let verdict = format!(
+        "{} · lengths in {}",
+        hull.verdict.replace('_', " "),
+        hull.units
+    );
+    let style = TextStyle {
+        size: 3.6,
+        colour: GREY,
+        anchor: Anchor::Start,
+        bold: false,
+    };
+    canvas.text(
+        [MARGIN + 4.4, y],
+        style,
+        &text::clip(&verdict, 3.6, room - 4.4),
+    );
+    y
+}
+
+/// The sentences, wrapped; returns the base line after the last, mm.
+fn sentences(canvas: &mut Canvas, summary: &[String], top: f64) -> f64 {
+    let style = TextStyle {
+        size: SENTENCE_TYPE,
+        colour: INK,
+        anchor: Anchor::Start,
+        bold: false,
+    };
+    let room = PAGE_WIDTH - 2.0 * MARGIN;
+    let lines = summary
+        .iter()
+        .flat_map(|s| text::wrap(s, SENTENCE_TYPE, room));
+    let mut y = top;
+    for line in lines.take(MOST_LINES) {
+        canvas.text([MARGIN, y], style, &line);
+        y += SENTENCE_LINE;
+    }
+    y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plates::{PlateDrawing, ProfileLine, RulingLine};
+    use super::*;
+    use nalgebra::Point3;
+
+    fn hull(twist_deg: f64) -> HullDrawing {
+        let curves = [
+            |x: f64| Point3::new(x, 3.0 - x * x / 60.0, 4.0),
+            |x: f64| Point3::new(x, 2.0 - x * x / 70.0, 0.02 * x),
+        ];
+        let at = |i: i32| f64::from(i) / 4.0;
+        let rulings = (0..=40).map(at).map(|x| RulingLine {
+            u: x / 10.0,
+            from: curves[0](x),
+            to: curves[1](x),
+            twist_deg: twist_deg * (x / 10.0),
+            bend_radius_from: 1.0,
+            bend_radius_to: 1.0,
+        });
+        let line = |k: usize| ProfileLine {
+            name: format!("curve {k}"),
+            points: (0..=40).map(at).map(curves[k]).collect(),
+        };
+        HullDrawing {
+            title: "A <hull> & more".into(),
+            units: "m".into(),
+            twist_limit_deg: 6.0,
+            plates: vec![PlateDrawing {
+                name: "deck – keel".into(),
+                rulings: rulings.collect(),
+                within_limits: twist_deg <= 6.0,
+            }],
+            profiles: vec![line(0), line(1)],
+            verdict: "within_limits".into(),
+            summary: vec!["One plate.".into()],
+        }
+    }
+
+    #[test]
+    fn the_page_shows_views_legend_and_words() {
+        let page = lines_plan(&hull(5.0));
+        for expected in [
+            "Profile (x–z)",
+            "Plan (x–y)",
+            "Body (y–z)",
+            "limit 6°",
+            "A &lt;hull&gt; &amp; more",
+            "within limits · lengths in m",
+            "One plate.",
+            "deck – keel",
+            "viewBox=\"0 0 297 ",
+        ] {
+            assert!(page.contains(expected), "no {expected:?}");
+        }
+        assert!(!page.contains("<script") && !page.contains("href") && !page.contains("NaN"));
+    }
+
+    #[test]
+    fn twist_above_the_limit_is_red_and_heavy() {
+        let heavy = format!("stroke=\"{}\" stroke-width=\"0.38\"", colour::ABOVE_LIMIT);
+        assert!(lines_plan(&hull(9.0)).contains(&heavy));
+        assert!(!lines_plan(&hull(5.0)).contains(&heavy));
+    }
+
+    #[test]
+    fn nothing_to_draw_is_still_a_page() {
+        let mut empty = hull(1.0);
+        empty.plates.clear();
+        empty.profiles.clear();
+        assert!(lines_plan(&empty).contains("One plate."));
+        let mut broken = hull(f64::NAN);
+        broken.plates[0].rulings[3].from.x = f64::INFINITY;
+        broken.profiles[0].points[3].y = f64::NAN;
+        let page = lines_plan(&broken);
+        assert!(!page.contains("NaN") && !page.contains("inf"));
+    }
+
+    #[test]
+    fn the_same_drawing_gives_the_same_bytes() {
+        assert_eq!(lines_plan(&hull(5.0)), lines_plan(&hull(5.0)));
+    }
+}
