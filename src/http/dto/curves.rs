@@ -1,0 +1,199 @@
+//! Points, curves and surfaces on the wire. Lengths are in the job's unit.
+
+use crate::geometry::{BSplineCurve, BSplineSurface};
+use nalgebra::Point3;
+use serde::{Deserialize, Serialize};
+use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
+use utoipa::openapi::{RefOr, schema::SchemaType};
+use utoipa::{PartialSchema, ToSchema};
+
+/// The largest coordinate in the smallest unit: 1e6 m in millimetres. The
+/// bound for the job's own unit is checked with the unit known.
+const LARGEST_COORDINATE: f64 = 1e9;
+
+/// A point as three coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Point(pub [f64; 3]);
+
+impl PartialSchema for Point {
+    /// utoipa gives `[f64; 3]` no counts, so that two coordinates would pass.
+    fn schema() -> RefOr<Schema> {
+        let coordinate = ObjectBuilder::new()
+            .schema_type(SchemaType::Type(Type::Number))
+            .minimum(Some(-LARGEST_COORDINATE))
+            .maximum(Some(LARGEST_COORDINATE));
+        ArrayBuilder::new()
+            .items(coordinate)
+            .min_items(Some(3))
+            .max_items(Some(3))
+            .description(Some("x, y, z"))
+            .examples([serde_json::json!([7.0, 11.48, 11.91])])
+            .into()
+    }
+}
+
+impl ToSchema for Point {}
+
+impl From<Point3<f64>> for Point {
+    fn from(p: Point3<f64>) -> Self {
+        Point([p.x, p.y, p.z])
+    }
+}
+
+impl From<Point> for Point3<f64> {
+    fn from(p: Point) -> Self {
+        Point3::new(p.0[0], p.0[1], p.0[2])
+    }
+}
+
+/// A B-spline curve, rational when it has weights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Spline {
+    /// Polynomial degree.
+    #[schema(minimum = 1, maximum = 9, value_type = u32)]
+    #[serde(deserialize_with = "whole")]
+    pub degree: usize,
+    /// Knots, non-decreasing, multiplicities written out: control points +
+    /// degree + 1 of them.
+    #[schema(min_items = 4, max_items = 1_000_000)]
+    pub knots: Vec<f64>,
+    /// Control points.
+    #[schema(min_items = 2, max_items = 1_000_000)]
+    pub control_points: Vec<Point>,
+    /// One positive weight a control point; none for a polynomial curve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Vec<f64>>,
+}
+
+/// JSON knows no integers, so `3.0` is one.
+fn whole<'de, D: serde::Deserializer<'de>>(reader: D) -> Result<usize, D::Error> {
+    use serde::de::Error;
+    let x = f64::deserialize(reader)?;
+    // Far above any degree or index, and exact in f64.
+    const LARGEST: f64 = 1e9;
+    if x.fract() == 0.0 && (0.0..=LARGEST).contains(&x) {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        return Ok(x as usize);
+    }
+    Err(D::Error::custom("not a whole number"))
+}
+
+/// See [`whole`]; for the other DTOs.
+pub(super) fn whole_number<'de, D: serde::Deserializer<'de>>(reader: D) -> Result<usize, D::Error> {
+    whole(reader)
+}
+
+impl From<&BSplineCurve> for Spline {
+    fn from(curve: &BSplineCurve) -> Self {
+        Spline {
+            degree: curve.degree(),
+            knots: curve.knots().to_vec(),
+            control_points: curve.control_points().iter().map(|p| (*p).into()).collect(),
+            weights: curve.weights().map(<[f64]>::to_vec),
+        }
+    }
+}
+
+/// A named curve of a result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct NamedCurve {
+    /// The user's name for it.
+    pub name: String,
+    /// What it is: `profile` for a boundary that plates share.
+    #[schema(examples("profile"))]
+    pub role: String,
+    /// Polynomial degree.
+    #[schema(minimum = 1)]
+    pub degree: usize,
+    /// Knots, multiplicities written out.
+    pub knots: Vec<f64>,
+    /// Control points.
+    pub control_points: Vec<Point>,
+    /// Weights of a rational curve.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub weights: Option<Vec<f64>>,
+}
+
+impl NamedCurve {
+    /// A curve with its name and role.
+    #[must_use]
+    pub fn new(name: &str, role: &str, curve: &BSplineCurve) -> Self {
+        let Spline {
+            degree,
+            knots,
+            control_points,
+            weights,
+        } = curve.into();
+        NamedCurve {
+            name: name.into(),
+            role: role.into(),
+            degree,
+            knots,
+            control_points,
+            weights,
+        }
+    }
+}
+
+/// A named tensor-product B-spline surface of a result.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct Surface {
+    /// Its name.
+    #[schema(examples("main_deck – upper_chine"))]
+    pub name: String,
+    /// What it is: `plate`.
+    #[schema(examples("plate"))]
+    pub role: String,
+    /// Degrees in u and v; a plate has `[3, 1]`.
+    #[schema(min_items = 2, max_items = 2, value_type = Vec<u32>)]
+    pub degree: [usize; 2],
+    /// Knots in u and in v, multiplicities written out.
+    #[schema(min_items = 2, max_items = 2, value_type = Vec<Vec<f64>>)]
+    pub knots: [Vec<f64>; 2],
+    /// Control points, indexed `[u][v]`.
+    pub control_points: Vec<Vec<Point>>,
+    /// Weights of a rational surface, indexed `[u][v]`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub weights: Option<Vec<Vec<f64>>>,
+}
+
+impl Surface {
+    /// A surface with its name and role.
+    #[must_use]
+    pub fn new(name: &str, role: &str, surface: &BSplineSurface) -> Self {
+        // A surface has at least two control points a direction; one keeps
+        // `chunks` from panicking on a malformed one.
+        let columns = surface.counts()[1].max(1);
+        let points: Vec<Point> = surface
+            .control_points()
+            .iter()
+            .map(|p| (*p).into())
+            .collect();
+        Surface {
+            name: name.into(),
+            role: role.into(),
+            degree: surface.degrees(),
+            knots: surface.knots().clone(),
+            control_points: points.chunks(columns).map(<[Point]>::to_vec).collect(),
+            weights: surface
+                .weights()
+                .map(|w| w.chunks(columns).map(<[f64]>::to_vec).collect()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::MAX_DEGREE;
+
+    #[test]
+    fn the_published_degree_is_what_the_splines_can() {
+        let schema = serde_json::to_value(Spline::schema()).unwrap();
+        assert_eq!(schema["properties"]["degree"]["maximum"], MAX_DEGREE);
+    }
+}

@@ -1,0 +1,67 @@
+//! From a stored result to what the file writers draw.
+
+use super::result::{PlateResult, ResultDocument, RulingResult};
+use crate::formats::plates::{HullDrawing, PlateDrawing, ProfileLine, RulingLine};
+use crate::http::dto::job::VerdictWord;
+
+/// The title of a drawing whose job has no label.
+const UNTITLED: &str = "Hull plates";
+
+impl From<&ResultDocument> for HullDrawing {
+    fn from(result: &ResultDocument) -> Self {
+        let plates = &result.method_specific.plates;
+        HullDrawing {
+            title: result.label.clone().unwrap_or_else(|| UNTITLED.to_owned()),
+            units: result.units.to_string(),
+            twist_limit_deg: result.method_specific.options.max_twist_deg,
+            plates: plates.iter().map(Into::into).collect(),
+            profiles: profile_lines(result),
+            verdict: match result.verdict {
+                VerdictWord::WithinLimits => "within_limits".to_owned(),
+                VerdictWord::OutsideLimits => "outside_limits".to_owned(),
+            },
+            summary: result.summary.clone(),
+        }
+    }
+}
+
+impl From<&PlateResult> for PlateDrawing {
+    fn from(plate: &PlateResult) -> Self {
+        PlateDrawing {
+            name: plate.name.clone(),
+            rulings: plate.rulings.iter().map(Into::into).collect(),
+            within_limits: plate.within_limits,
+        }
+    }
+}
+
+impl From<&RulingResult> for RulingLine {
+    fn from(ruling: &RulingResult) -> Self {
+        RulingLine {
+            u: ruling.u,
+            from: ruling.from.into(),
+            to: ruling.to.into(),
+            twist_deg: ruling.twist_deg,
+            bend_radius_from: ruling.bend_radius_from.unwrap_or(f64::INFINITY),
+            bend_radius_to: ruling.bend_radius_to.unwrap_or(f64::INFINITY),
+        }
+    }
+}
+
+/// Each profile through the ruling ends on it, which the mesh uses too: of the
+/// plate that begins there, or for the last profile of the plate that ends
+/// there.
+fn profile_lines(result: &ResultDocument) -> Vec<ProfileLine> {
+    let plates = &result.method_specific.plates;
+    let points = |i: usize| match (plates.get(i), plates.last()) {
+        (Some(plate), _) => plate.rulings.iter().map(|r| r.from.into()).collect(),
+        (None, Some(last)) => last.rulings.iter().map(|r| r.to.into()).collect(),
+        (None, None) => Vec::new(),
+    };
+    (result.curves.iter().enumerate())
+        .map(|(i, curve)| ProfileLine {
+            name: curve.name.clone(),
+            points: points(i),
+        })
+        .collect()
+}

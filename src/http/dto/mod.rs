@@ -1,0 +1,17 @@
+//! What goes over the wire: requests and answers as serde types that carry
+//! their own documentation. The OpenAPI document, the checks of a request and
+//! the JSON itself all come from these types.
+
+pub mod curves;
+pub mod diagnostics;
+pub mod drawing;
+pub mod hull_plates;
+pub mod job;
+pub mod result;
+mod to_request;
+
+pub use curves::{Point, Spline, Surface};
+pub use hull_plates::{HullPlatesInput, HullPlatesOptions, ProfileCurve};
+pub use job::JobRequest;
+pub use result::ResultDocument;
+pub use to_request::to_request;

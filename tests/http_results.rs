@@ -1,0 +1,242 @@
+//! What jobs leave: results, files, diagnostics.
+
+#![allow(clippy::unwrap_used)] // Helpers of tests: a panic is their failure.
+
+mod http_support;
+
+use axum::body::Body;
+use axum::http::{Method, StatusCode};
+use http_support::{idle_service, job, service};
+use serde_json::{Value, json};
+
+const FORMATS: [(&str, &str); 4] = [
+    ("json", "application/json"),
+    ("obj", "model/obj"),
+    ("csv", "text/csv; charset=utf-8"),
+    ("svg", "image/svg+xml"),
+];
+
+#[tokio::test]
+async fn the_result_tells_everything() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let answer = service.get(&format!("{place}/result")).await;
+    assert_eq!(answer.status, StatusCode::OK);
+    assert_eq!(answer.header("content-type"), "application/json");
+    let result = answer.json();
+    assert_eq!(result["method"], "hull_plates");
+    assert_eq!(result["units"], "m");
+    assert_eq!(result["verdict"], "within_limits");
+    let plate = &result["surfaces"][0];
+    assert_eq!(plate["role"], "plate");
+    // Indexed [u][v]: three stations, first profile at v = 0.
+    assert_eq!(
+        plate["control_points"][2],
+        json!([[2.0, 0.0, 0.5], [2.0, 1.0, 0.5]])
+    );
+    assert_eq!(result["curves"][1]["name"], "keel");
+    let ruling = &result["method_specific"]["plates"][0]["rulings"][0];
+    assert_eq!(ruling["bend_radius_from"], Value::Null, "infinite");
+    assert_eq!(ruling["bend_radius_to"], -3.5);
+    assert_eq!(result["method_specific"]["options"]["max_twist_deg"], 6.0);
+    assert_eq!(
+        result["diagnostics"]["plates"][0]["regression_clearance"],
+        Value::Null
+    );
+}
+
+#[tokio::test]
+async fn the_same_job_gives_the_same_bytes() {
+    let service = service().await;
+    let (first, second) = (
+        service.done(&job("deck")).await,
+        service.done(&job("deck")).await,
+    );
+    assert_ne!(first, second);
+    for (extension, _) in FORMATS {
+        let [a, b] = [&first, &second].map(|place| format!("{place}/result.{extension}"));
+        let (a, b) = (service.get(&a).await, service.get(&b).await);
+        assert_eq!(a.body, b.body, "{extension}");
+        assert_eq!(a.header("etag"), b.header("etag"));
+    }
+}
+
+#[tokio::test]
+async fn files_have_name_tag_length_and_ranges() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    for (extension, kind) in FORMATS {
+        let path = format!("{place}/result.{extension}");
+        let whole = service.get(&path).await;
+        assert_eq!(whole.status, StatusCode::OK, "{extension}");
+        assert_eq!(whole.header("content-type"), kind);
+        assert_eq!(whole.header("content-length"), whole.body.len().to_string());
+        assert!(!whole.body.is_empty());
+        let tag = whole.header("etag");
+        assert_eq!(tag.len(), 66, "a quoted SHA-256");
+        let name = whole.header("content-disposition");
+        assert!(
+            name.contains(&format!("filename*=UTF-8''B%C3%A4r%201.{extension}")),
+            "{name}"
+        );
+
+        let head = service.call(Method::HEAD, &path).await;
+        assert_eq!(head.status, StatusCode::OK);
+        assert!(head.body.is_empty());
+        assert_eq!(
+            head.header("content-length"),
+            whole.header("content-length")
+        );
+        assert_eq!(head.header("etag"), tag);
+
+        let same = service.get_with(&path, &[("if-none-match", tag)]).await;
+        assert_eq!(same.status, StatusCode::NOT_MODIFIED);
+        assert!(same.body.is_empty());
+
+        let part = service.get_with(&path, &[("range", "bytes=3-9")]).await;
+        assert_eq!(part.status, StatusCode::PARTIAL_CONTENT);
+        assert_eq!(part.body, whole.body.slice(3..10));
+        let place = format!("bytes 3-9/{}", whole.body.len());
+        assert_eq!(part.header("content-range"), place);
+        let stale = [("range", "bytes=3-9"), ("if-range", "\"old\"")];
+        assert_eq!(service.get_with(&path, &stale).await.status, StatusCode::OK);
+
+        let outside = service
+            .get_with(&path, &[("range", "bytes=99999999-")])
+            .await;
+        outside.problem(416, "range-not-satisfiable");
+        assert_eq!(
+            outside.header("content-range"),
+            format!("bytes */{}", whole.body.len())
+        );
+    }
+}
+
+#[tokio::test]
+async fn strong_tags_are_never_compressed_the_rest_is() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let gzip = [("accept-encoding", "gzip")];
+    let result = service
+        .get_with(&format!("{place}/result.json"), &gzip)
+        .await;
+    assert_eq!(result.header("content-encoding"), "");
+    let document = service.get_with("/openapi.json", &gzip).await;
+    assert_eq!(document.header("content-encoding"), "gzip");
+}
+
+#[tokio::test]
+async fn accept_chooses_or_is_refused() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let path = format!("{place}/result");
+    for (accept, kind) in [
+        ("*/*", "application/json"),
+        ("text/csv", "text/csv; charset=utf-8"),
+        ("image/svg+xml, */*;q=0.1", "image/svg+xml"),
+    ] {
+        let answer = service.get_with(&path, &[("accept", accept)]).await;
+        assert_eq!(answer.header("content-type"), kind, "{accept}");
+        assert_eq!(answer.header("vary"), "Accept");
+    }
+    let refused = service.get_with(&path, &[("accept", "text/html")]).await;
+    let problem = refused.problem(406, "not-acceptable");
+    assert!(problem["detail"].as_str().unwrap().contains("model/obj"));
+}
+
+#[tokio::test]
+async fn unknown_formats_name_the_known() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let problem = service.get(&format!("{place}/result.step")).await;
+    let problem = problem.problem(404, "format-not-available");
+    assert_eq!(
+        problem["detail"],
+        "there is no result.step; there are json, obj, csv, svg"
+    );
+}
+
+#[tokio::test]
+async fn results_that_are_not_there_say_why() {
+    let service = service().await;
+    let slow = service.post("/v1/jobs", job("slow").to_string()).await;
+    let slow = slow.header("location").to_owned();
+    for path in ["/result", "/result.json", "/result.svg"] {
+        let answer = service.get(&format!("{slow}{path}")).await;
+        answer.problem(409, "result-not-ready");
+        assert!(!answer.header("retry-after").is_empty());
+    }
+    service.post(&format!("{slow}/cancel"), Body::empty()).await;
+    service.get(&format!("{slow}?wait=20")).await;
+    service
+        .get(&format!("{slow}/result.obj"))
+        .await
+        .problem(409, "job-dismissed");
+
+    let invalid = service.done(&job("invalid")).await;
+    let problem = service
+        .get(&format!("{invalid}/result"))
+        .await
+        .problem(409, "job-failed");
+    assert_eq!(problem["errors"][0]["pointer"], "/input/profiles/1");
+    assert_eq!(problem["errors"][0]["hint"], "reverse it");
+    assert!(
+        problem["detail"]
+            .as_str()
+            .unwrap()
+            .starts_with("invalid-input: "),
+        "{problem}"
+    );
+}
+
+#[tokio::test]
+async fn waiting_works_on_the_result_too() {
+    let service = service().await;
+    let posted = service.post("/v1/jobs", job("deck").to_string()).await;
+    let path = format!("{}/result?wait=20", posted.header("location"));
+    assert_eq!(service.get(&path).await.status, StatusCode::OK);
+}
+
+#[tokio::test]
+async fn failures_have_code_sentence_and_diagnostics() {
+    let service = service().await;
+    for (first, code, part) in [
+        ("invalid", "invalid-input", "runs against"),
+        ("numerical", "numerical", "singular"),
+        ("panic", "worker-panic", ""),
+    ] {
+        let place = service.done(&job(first)).await;
+        let seen = service.get(&place).await.json();
+        assert_eq!(seen["status"], "failed", "{first}");
+        assert_eq!(seen["error"]["code"], code);
+        let detail = seen["error"]["detail"].as_str().unwrap();
+        assert!(
+            detail.contains(part) && !detail.contains("on purpose"),
+            "{detail}"
+        );
+        let answer = service.get(&format!("{place}/diagnostics")).await;
+        assert_eq!(answer.status, StatusCode::OK, "{first}");
+        let told = answer.json();
+        assert_eq!(told["status"], "failed");
+        assert_eq!(told["error"]["code"], code);
+        assert_eq!(told["figures"], Value::Null);
+    }
+}
+
+#[tokio::test]
+async fn diagnostics_of_a_success_and_of_a_job_that_waits() {
+    let running = service().await;
+    let place = running.done(&job("deck")).await;
+    let told = running.get(&format!("{place}/diagnostics")).await.json();
+    assert_eq!(told["verdict"], "within_limits");
+    assert_eq!(told["figures"]["plates"][0]["twist_max_deg"], 0.25);
+    let result = running.get(&format!("{place}/result")).await.json();
+    assert_eq!(told["figures"], result["diagnostics"]);
+
+    let idle = idle_service().await;
+    let posted = idle.post("/v1/jobs", job("deck").to_string()).await;
+    let answer = idle
+        .get(&format!("{}/diagnostics", posted.header("location")))
+        .await;
+    answer.problem(409, "not-started");
+}
