@@ -1,6 +1,23 @@
 //! Curves and surfaces: B-splines, ruled surfaces, distances. Knows numerics,
 //! nothing above.
 
-mod bspline;
+mod arc_length;
+mod bounding_box;
+pub mod bspline;
+mod closest;
+#[cfg(test)]
+pub(crate) mod conformance;
+mod distance;
+mod ruled;
+mod tolerance;
 
-pub use bspline::{BSplineCurve, BSplineSurface, SplineError};
+pub use arc_length::ArcLength;
+pub use bounding_box::BoundingBox;
+pub use bspline::{
+    Axis, BSplineCurve, BSplineSurface, CurveJet, Knots, MAX_DEGREE, Parametrization, SplineError,
+    SurfaceJet, complete_cubic, interpolate, interpolate_grid, interpolation_parameters, join_c0,
+};
+pub use closest::{Closest, CurveIndex};
+pub use distance::{CurveDistance, directed_distance, directed_distance_between};
+pub use ruled::{FundamentalForms, RuledSurface, RulingJet};
+pub use tolerance::Tolerance;

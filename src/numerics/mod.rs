@@ -1,1 +1,10 @@
-//! Scalar mathematics: quadrature, banded and sparse systems.
+//! Scalar mathematics: quadrature, banded and variable-band systems. Knows
+//! nobody else in the crate.
+
+pub mod banded;
+pub mod quadrature;
+
+pub use banded::{
+    BandedLu, BandedMatrix, EnvelopeFactor, EnvelopeMatrix, NotPositiveDefinite, Singular,
+};
+pub use quadrature::GaussLegendre;
