@@ -23,9 +23,10 @@
 //!   reports progress through [`solver::Control`]; it never panics on bad input.
 //! * Each method is a least-squares problem handed to the one [`solver`];
 //!   every Jacobian is analytic and checked against differences in a test.
-//! * Only `jobs::store` writes to disk, only `jobs::clock` reads the clock,
-//!   only `http::problem` picks status codes, only `app` and the programme's
-//!   `main` read settings.
+//! * Only `jobs::store` writes to disk (and [`cli`] the files that it is told
+//!   to), only `jobs::clock` reads the clock, only `http::problem` picks status
+//!   codes, only the programme's own part ([`app`], [`cli`], `main`) reads
+//!   [`settings`].
 //! * A fit that does not reach its goal is a result with a report, not an error.
 //!
 //! `tests/architecture.rs` reads the `use crate::` lines and refuses arrows
@@ -38,10 +39,13 @@
 //! durable queue and [`http`] for the contract with the world.
 
 pub mod app;
+pub mod cli;
 pub mod formats;
 pub mod geometry;
 pub mod http;
 pub mod jobs;
 pub mod methods;
 pub mod numerics;
+pub mod settings;
 pub mod solver;
+pub mod telemetry;
