@@ -4,8 +4,8 @@
 //! A handler returns [`ApiError`]; its [`Code`] decides status, title and type
 //! through exhaustive matches, so a new kind of failure does not compile until
 //! it has them. The document is completed (`instance`, `request_id`) and
-//! written by the layers around the router, the outermost layer, which also turns
-//! bare error answers of the libraries beneath into problem documents.
+//! written by the outermost layer around the router, which also turns bare
+//! error answers of the libraries beneath into problem documents.
 
 use axum::http::{HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
