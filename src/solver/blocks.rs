@@ -42,13 +42,14 @@ pub struct Block<'a> {
     pub jacobian: &'a [f64],
 }
 
-impl Block<'_> {
+impl<'a> Block<'a> {
     /// The rows of the Jacobian with the indices of their residuals.
-    pub fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
+    pub fn rows(&self) -> impl Iterator<Item = (usize, &'a [f64])> + use<'a> {
+        let first = self.first;
         self.jacobian
             .chunks_exact(self.columns.len())
             .enumerate()
-            .map(|(r, row)| (self.first + r, row))
+            .map(move |(r, row)| (first + r, row))
     }
 }
 
@@ -115,29 +116,47 @@ impl Blocks {
         self.one_sided[r]
     }
 
-    /// ½ Σ r² + ½ Σ max(0, r)², for the residuals or for other values of them.
+    /// ½ Σ r² + ½ Σ max(0, r)², for the residuals or for other values of them;
+    /// with a smoothing, [`soft_plus`] stands for max(0, r).
     #[must_use]
-    pub fn cost_of(&self, values: &[f64]) -> f64 {
-        let counts =
-            |(r, one_sided): (&f64, &bool)| if *one_sided && *r < 0.0 { 0.0 } else { r * r };
+    pub fn cost_of(&self, values: &[f64], smoothing: f64) -> f64 {
+        let counts = |(r, one_sided): (&f64, &bool)| {
+            let r = if *one_sided {
+                soft_plus(*r, smoothing).value
+            } else {
+                *r
+            };
+            r * r
+        };
         0.5 * values.iter().zip(&self.one_sided).map(counts).sum::<f64>()
     }
 
     /// The cost of the residuals.
     #[must_use]
-    pub fn cost(&self) -> f64 {
-        self.cost_of(&self.residuals)
+    pub fn cost(&self, smoothing: f64) -> f64 {
+        self.cost_of(&self.residuals, smoothing)
     }
 
-    /// Which residuals count when they have the given values.
-    pub fn active(&self, values: &[f64], active: &mut Vec<bool>) {
-        active.clear();
-        active.extend(
-            values
-                .iter()
-                .zip(&self.one_sided)
-                .map(|(r, one)| !*one || *r > 0.0),
-        );
+    /// First and second derivatives of the cost by each residual, when they
+    /// have the given values.
+    pub fn derivatives(&self, values: &[f64], smoothing: f64, derivatives: &mut Derivatives) {
+        derivatives.first.clear();
+        derivatives.second.clear();
+        for (r, one_sided) in values.iter().zip(&self.one_sided) {
+            let soft = if *one_sided {
+                soft_plus(*r, smoothing)
+            } else {
+                SoftPlus {
+                    value: *r,
+                    slope: 1.0,
+                    bend: 0.0,
+                }
+            };
+            derivatives.first.push(soft.value * soft.slope);
+            derivatives
+                .second
+                .push(soft.slope * soft.slope + soft.value * soft.bend);
+        }
     }
 
     /// The blocks; empty unless derivatives were wanted.
@@ -166,14 +185,92 @@ impl Blocks {
         }
     }
 
-    /// Adds `Jᵀ·values` over the residuals that count.
-    pub fn add_gradient(&self, values: &[f64], active: &[bool], gradient: &mut [f64]) {
+    /// Adds `Jᵀ·values`.
+    pub fn add_gradient(&self, values: &[f64], gradient: &mut [f64]) {
         for block in self.iter() {
-            for (r, row) in block.rows().filter(|(r, _)| active[*r]) {
+            for (r, row) in block.rows().filter(|(r, _)| values[*r] != 0.0) {
                 for (c, j) in block.columns.iter().zip(row) {
                     gradient[*c] += values[r] * j;
                 }
             }
         }
+    }
+}
+
+/// Derivatives of the cost by the residuals.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Derivatives {
+    /// ∂/∂r; zero where a residual does not count.
+    pub first: Vec<f64>,
+    /// ∂²/∂r², never negative; zero where a residual does not count.
+    pub second: Vec<f64>,
+}
+
+/// A stand-in for max(0, r) with its derivatives.
+struct SoftPlus {
+    value: f64,
+    slope: f64,
+    bend: f64,
+}
+
+/// ρ = (r + √(r² + 4μ²))/2, which is max(0, r) for μ = 0 and at most μ above it
+/// elsewhere (Chen & Harker 1993; the value is the positive root of
+/// ρ(ρ − r) = μ², so that μ² is the complementarity of an interior point
+/// method). ½ρ² is convex: ρ′² + ρρ″ > 0.
+fn soft_plus(r: f64, smoothing: f64) -> SoftPlus {
+    if smoothing == 0.0 {
+        let counts = r > 0.0 || r.is_nan();
+        return SoftPlus {
+            value: if counts { r } else { 0.0 },
+            slope: f64::from(u8::from(counts)),
+            bend: 0.0,
+        };
+    }
+    let root = r.hypot(2.0 * smoothing);
+    // The other form loses every digit for r ≪ −μ.
+    let value = if r > 0.0 {
+        0.5 * (r + root)
+    } else {
+        2.0 * smoothing * smoothing / (root - r)
+    };
+    SoftPlus {
+        value,
+        slope: value / root,
+        bend: 2.0 * smoothing * smoothing / (root * root * root),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_soft_plus_is_convex_and_near_the_sharp_one() {
+        for smoothing in [1e-6, 1e-2, 1.0] {
+            for i in -40..=40 {
+                let r = 0.25 * smoothing * f64::from(i);
+                let soft = soft_plus(r, smoothing);
+                let above = soft.value - r.max(0.0);
+                assert!(
+                    above > 0.0 && above <= smoothing * (1.0 + 1e-12),
+                    "{r}: {above}"
+                );
+                assert!(soft.slope * soft.slope + soft.value * soft.bend > 0.0);
+                let h = 1e-4 * smoothing;
+                let [a, b] = [-h, h].map(|h| soft_plus(r + h, smoothing));
+                assert!(((b.value - a.value) / (2.0 * h) - soft.slope).abs() < 1e-6);
+                let bend = (b.slope - a.slope) / (2.0 * h);
+                assert!((bend - soft.bend).abs() * smoothing < 1e-6);
+            }
+        }
+    }
+
+    #[test]
+    fn without_smoothing_it_is_sharp() {
+        for (r, value, slope) in [(-2.0, 0.0, 0.0), (3.0, 3.0, 1.0)] {
+            let soft = soft_plus(r, 0.0);
+            assert_eq!((soft.value, soft.slope, soft.bend), (value, slope, 0.0));
+        }
+        assert!(soft_plus(f64::NAN, 0.0).value.is_nan());
     }
 }

@@ -11,10 +11,17 @@
 //! line search. A step thus foresees the inequalities that it would break;
 //! plain Gauss–Newton runs into them one after the other.
 //!
+//! That foresight costs a factorisation for every change of the set. With a
+//! [`Settings::smoothing`] μ a one-sided residual counts ½ρ² instead, ρ a
+//! smooth stand-in for max(0, r) that is off by at most μ, and a step is one
+//! Newton step on that smooth convex function of J: a caller that lowers μ
+//! from run to run follows the central path of an interior point method, at
+//! one factorisation a step.
+//!
 //! A trial point whose residuals are not finite counts as no reduction, so a
 //! problem can keep the iteration inside its domain by saying so.
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Derivatives};
 use super::normal::{NormalEquations, NormalMatrix};
 use super::{Control, LeastSquares, Report, Stop, Termination};
 
@@ -31,6 +38,8 @@ pub struct Settings {
     pub reduction: f64,
     /// Damping at the start, relative to D.
     pub damping: f64,
+    /// μ of the one-sided residuals, in their unit; zero for sharp ones.
+    pub smoothing: f64,
     /// How the normal equations are stored and factored.
     pub normal_equations: NormalEquations,
 }
@@ -43,6 +52,7 @@ impl Default for Settings {
             step: 1e-10,
             reduction: 1e-9,
             damping: 1e-3,
+            smoothing: 0.0,
             normal_equations: NormalEquations::Envelope,
         }
     }
@@ -63,8 +73,9 @@ struct State {
     cost: f64,
     gradient: Vec<f64>,
     scale: Vec<f64>,
-    /// Residuals that count at `x`.
-    active: Vec<bool>,
+    /// Derivatives of the cost by the residuals at `x`.
+    derivatives: Derivatives,
+    smoothing: f64,
     damping: f64,
     /// Nielsen's ν: the factor of the next increase.
     growth: f64,
@@ -123,7 +134,8 @@ impl State {
             cost: f64::INFINITY,
             gradient: vec![0.0; x.len()],
             scale: vec![0.0; x.len()],
-            active: Vec::new(),
+            derivatives: Derivatives::default(),
+            smoothing: settings.smoothing,
             damping: settings.damping,
             growth: 2.0,
             evaluations: 0,
@@ -144,12 +156,12 @@ impl State {
         blocks.reset(true);
         problem.evaluate(&self.x, blocks);
         self.evaluations += 1;
-        self.cost = blocks.cost();
-        blocks.active(blocks.residuals(), &mut self.active);
+        self.cost = blocks.cost(self.smoothing);
+        blocks.derivatives(blocks.residuals(), self.smoothing, &mut self.derivatives);
         self.gradient.fill(0.0);
-        blocks.add_gradient(blocks.residuals(), &self.active, &mut self.gradient);
+        blocks.add_gradient(&self.derivatives.first, &mut self.gradient);
         normal.assemble(blocks, self.x.len());
-        let diagonal = NormalMatrix::diagonal(blocks, &self.active, self.x.len());
+        let diagonal = NormalMatrix::diagonal(blocks, &self.derivatives.second, self.x.len());
         let top = largest(&diagonal).max(f64::MIN_POSITIVE);
         for (scale, d) in self.scale.iter_mut().zip(&diagonal) {
             // An unknown that no residual sees still needs a positive scale.
@@ -166,18 +178,18 @@ impl State {
         settings: &Settings,
     ) -> Option<Termination> {
         let shift: Vec<f64> = self.scale.iter().map(|d| self.damping * d).collect();
-        let Some(model) = Model::minimize(blocks, normal, &shift, &self.active) else {
+        let Some(model) = self.model(blocks, normal, &shift) else {
             return self.refuse();
         };
         if relative_size(&model.step, &self.x) <= settings.step {
             return Some(Termination::SmallStep);
         }
-        let predicted = self.cost - model.value;
+        let predicted = model.reduction;
         let trial: Vec<f64> = self.x.iter().zip(&model.step).map(|(x, p)| x + p).collect();
         trial_blocks.reset(false);
         problem.evaluate(&trial, trial_blocks);
         self.evaluations += 1;
-        let reduction = self.cost - trial_blocks.cost();
+        let reduction = self.cost - trial_blocks.cost(self.smoothing);
         let gain = reduction / predicted;
         if !(gain.is_finite() && gain > LEAST_GAIN) {
             let lost = self.is_free() && predicted <= settings.reduction * self.cost;
@@ -197,6 +209,14 @@ impl State {
         small.then_some(Termination::SmallReduction)
     }
 
+    fn model(&self, blocks: &Blocks, normal: &mut NormalMatrix, shift: &[f64]) -> Option<Model> {
+        if self.smoothing > 0.0 {
+            Model::newton(blocks, normal, shift, (&self.derivatives, &self.gradient))
+        } else {
+            Model::minimize(blocks, normal, shift, &self.derivatives)
+        }
+    }
+
     /// Whether a small reduction means that little is left to gain, rather
     /// than that the damping allows only a short step.
     fn is_free(&self) -> bool {
@@ -213,8 +233,8 @@ impl State {
 /// The damped model of one linearisation, minimised.
 struct Model {
     step: Vec<f64>,
-    /// Its value at the step.
-    value: f64,
+    /// By how much its value falls.
+    reduction: f64,
 }
 
 /// Newton steps on the set of counting residuals; it settles after a few, and
@@ -224,20 +244,45 @@ const MODEL_STEPS: usize = 12;
 const SEARCHES: usize = 30;
 
 impl Model {
+    /// One Newton step on the smooth cost.
+    fn newton(
+        blocks: &Blocks,
+        normal: &mut NormalMatrix,
+        shift: &[f64],
+        (derivatives, gradient): (&Derivatives, &[f64]),
+    ) -> Option<Self> {
+        let mut step: Vec<f64> = gradient.iter().map(|g| -g).collect();
+        if !normal.solve(blocks, &derivatives.second, shift, &mut step) {
+            return None;
+        }
+        let downhill: f64 = step.iter().zip(gradient).map(|(p, g)| p * g).sum();
+        Some(Model {
+            step,
+            reduction: -0.5 * downhill,
+        })
+    }
+
+    /// The minimum for sharp one-sided residuals, by the set that counts.
     fn minimize(
         blocks: &Blocks,
         normal: &mut NormalMatrix,
         shift: &[f64],
-        active: &[bool],
+        start: &Derivatives,
     ) -> Option<Self> {
         let residuals = blocks.residuals();
-        let (mut step, mut active) = (vec![0.0; shift.len()], active.to_vec());
-        let (mut values, mut changes, mut next) = (residuals.to_vec(), Vec::new(), Vec::new());
+        let mut step = vec![0.0; shift.len()];
+        let mut weights = start.second.clone();
+        let (mut values, mut changes) = (residuals.to_vec(), Vec::new());
+        let mut next = Derivatives::default();
         for _ in 0..MODEL_STEPS {
+            let pull: Vec<f64> = residuals
+                .iter()
+                .zip(&weights)
+                .map(|(r, w)| -r * w)
+                .collect();
             let mut target = vec![0.0; shift.len()];
-            blocks.add_gradient(residuals, &active, &mut target);
-            target.iter_mut().for_each(|g| *g = -*g);
-            if !normal.solve(blocks, &active, shift, &mut target) {
+            blocks.add_gradient(&pull, &mut target);
+            if !normal.solve(blocks, &weights, shift, &mut target) {
                 return None;
             }
             target.iter_mut().zip(&step).for_each(|(t, p)| *t -= p);
@@ -250,15 +295,18 @@ impl Model {
                 .iter_mut()
                 .zip(&changes)
                 .for_each(|(v, c)| *v += share * c);
-            blocks.active(&values, &mut next);
-            if share == 1.0 && next == active {
+            blocks.derivatives(&values, 0.0, &mut next);
+            if share == 1.0 && next.second == weights {
                 break;
             }
-            std::mem::swap(&mut active, &mut next);
+            std::mem::swap(&mut weights, &mut next.second);
         }
         let damped: f64 = step.iter().zip(shift).map(|(p, s)| p * p * s).sum();
-        let value = blocks.cost_of(&values) + 0.5 * damped;
-        Some(Model { step, value })
+        let value = blocks.cost_of(&values, 0.0) + 0.5 * damped;
+        Some(Model {
+            step,
+            reduction: blocks.cost(0.0) - value,
+        })
     }
 }
 

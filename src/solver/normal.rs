@@ -7,12 +7,11 @@
 //! found from the blocks of each linearisation, so it may move from step to
 //! step; one-sided residuals belong to it whether they count or not.
 
+mod sparse;
+
 use super::blocks::{Block, Blocks};
 use crate::numerics::EnvelopeMatrix;
-use faer::linalg::solvers::Solve;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMat, Triplet};
-use faer::{Col, Side};
+use sparse::SparseNormal;
 
 /// How the normal equations are stored and factored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,25 +28,13 @@ pub(super) enum NormalMatrix {
     Sparse(SparseNormal),
 }
 
-#[derive(Default)]
-pub(super) struct SparseNormal {
-    dimension: usize,
-    entries: Vec<Triplet<usize, usize, f64>>,
-    /// Columns of the blocks behind `symbolic`: while they stay, it stays.
-    columns: Vec<usize>,
-    symbolic: Option<SymbolicLlt<usize>>,
-}
-
 impl NormalMatrix {
     pub(super) fn new(kind: NormalEquations, dimension: usize) -> Self {
         match kind {
             NormalEquations::Envelope => {
                 NormalMatrix::Envelope(EnvelopeMatrix::new((0..dimension).collect()))
             }
-            NormalEquations::Sparse => NormalMatrix::Sparse(SparseNormal {
-                dimension,
-                ..SparseNormal::default()
-            }),
+            NormalEquations::Sparse => NormalMatrix::Sparse(SparseNormal::default()),
         }
     }
 
@@ -59,21 +46,21 @@ impl NormalMatrix {
                 *matrix = EnvelopeMatrix::new(envelope(blocks, dimension));
                 add_products(
                     blocks,
-                    |r| !blocks.is_one_sided(r),
+                    |r| f64::from(u8::from(!blocks.is_one_sided(r))),
                     |i, j, v| matrix.add(i, j, v),
                 );
             }
-            NormalMatrix::Sparse(sparse) => sparse.assemble(blocks),
+            NormalMatrix::Sparse(sparse) => sparse.assemble(blocks, dimension),
         }
     }
 
-    /// The diagonal of JᵀJ with the one-sided residuals that count.
-    pub(super) fn diagonal(blocks: &Blocks, active: &[bool], dimension: usize) -> Vec<f64> {
+    /// The diagonal of JᵀJ with the one-sided residuals by their weights.
+    pub(super) fn diagonal(blocks: &Blocks, weights: &[f64], dimension: usize) -> Vec<f64> {
         let mut diagonal = vec![0.0; dimension];
         for block in blocks.iter() {
-            for (_, row) in block.rows().filter(|(r, _)| active[*r]) {
+            for (r, row) in block.rows().filter(|(r, _)| weights[*r] > 0.0) {
                 for (c, j) in block.columns.iter().zip(row) {
-                    diagonal[*c] += j * j;
+                    diagonal[*c] += weights[r] * j * j;
                 }
             }
         }
@@ -86,15 +73,21 @@ impl NormalMatrix {
     pub(super) fn solve(
         &mut self,
         blocks: &Blocks,
-        active: &[bool],
+        weights: &[f64],
         shift: &[f64],
         rhs: &mut [f64],
     ) -> bool {
-        let counts = |r: usize| blocks.is_one_sided(r) && active[r];
+        let weight = |r: usize| {
+            if blocks.is_one_sided(r) {
+                weights[r]
+            } else {
+                0.0
+            }
+        };
         match self {
             NormalMatrix::Envelope(matrix) => {
                 let mut damped = matrix.clone();
-                add_products(blocks, counts, |i, j, v| damped.add(i, j, v));
+                add_products(blocks, weight, |i, j, v| damped.add(i, j, v));
                 for (i, s) in shift.iter().enumerate() {
                     damped.add_to_diagonal(i, *s);
                 }
@@ -104,73 +97,8 @@ impl NormalMatrix {
                 factor.solve_in_place(rhs);
                 rhs.iter().all(|v| v.is_finite())
             }
-            NormalMatrix::Sparse(sparse) => sparse.solve(blocks, counts, shift, rhs),
+            NormalMatrix::Sparse(sparse) => sparse.solve(blocks, weight, shift, rhs),
         }
-    }
-}
-
-impl SparseNormal {
-    fn assemble(&mut self, blocks: &Blocks) {
-        let columns: Vec<usize> = blocks
-            .iter()
-            .flat_map(|b| b.columns.iter().copied())
-            .collect();
-        if columns != self.columns {
-            self.symbolic = None;
-            self.columns = columns;
-        }
-        self.entries.clear();
-        let entries = &mut self.entries;
-        // Zeros of rows that do not count keep the pattern the same.
-        add_products(
-            blocks,
-            |_| true,
-            |i, j, _| entries.push(Triplet::new(i, j, 0.0)),
-        );
-        add_products(
-            blocks,
-            |r| !blocks.is_one_sided(r),
-            |i, j, v| {
-                entries.push(Triplet::new(i, j, v));
-            },
-        );
-    }
-
-    fn solve(
-        &mut self,
-        blocks: &Blocks,
-        counts: impl Fn(usize) -> bool,
-        shift: &[f64],
-        rhs: &mut [f64],
-    ) -> bool {
-        let mut entries = self.entries.clone();
-        add_products(blocks, counts, |i, j, v| {
-            entries.push(Triplet::new(i, j, v))
-        });
-        entries.extend(
-            shift
-                .iter()
-                .enumerate()
-                .map(|(i, s)| Triplet::new(i, i, *s)),
-        );
-        let n = self.dimension;
-        let Ok(matrix) = SparseColMat::<usize, f64>::try_new_from_triplets(n, n, &entries) else {
-            return false;
-        };
-        if self.symbolic.is_none() {
-            self.symbolic = SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).ok();
-        }
-        let Some(symbolic) = self.symbolic.clone() else {
-            return false;
-        };
-        let Ok(factor) = Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower) else {
-            return false;
-        };
-        let solution = factor.solve(&Col::from_fn(n, |i| rhs[i]));
-        for (i, r) in rhs.iter_mut().enumerate() {
-            *r = solution[i];
-        }
-        rhs.iter().all(|v| v.is_finite())
     }
 }
 
@@ -186,33 +114,37 @@ fn envelope(blocks: &Blocks, dimension: usize) -> Vec<usize> {
     first
 }
 
-/// Calls `add(i, j, v)`, `i ≥ j`, with the products of which JᵀJ over the
-/// counted residuals is the sum.
+/// Calls `add(i, j, v)`, `i ≥ j`, with the products of which JᵀWJ is the sum.
 fn add_products(
     blocks: &Blocks,
-    counts: impl Fn(usize) -> bool,
+    weight: impl Fn(usize) -> f64,
     mut add: impl FnMut(usize, usize, f64),
 ) {
-    let mut rows: Vec<&[f64]> = Vec::new();
+    let mut rows = Vec::new();
     for block in blocks.iter() {
-        rows.clear();
-        let width = block.columns.len();
-        let lines = block.jacobian.chunks_exact(width).enumerate();
-        rows.extend(
-            lines
-                .filter(|(r, _)| counts(block.first + r))
-                .map(|(_, row)| row),
-        );
+        weighted_rows(&block, &weight, &mut rows);
         if !rows.is_empty() {
-            add_block(&block, &rows, &mut add);
+            products(&block, &rows, &mut add);
         }
     }
 }
 
-fn add_block(block: &Block<'_>, rows: &[&[f64]], add: &mut impl FnMut(usize, usize, f64)) {
+/// The rows of a block that have a weight.
+fn weighted_rows<'a>(
+    block: &Block<'a>,
+    weight: impl Fn(usize) -> f64,
+    rows: &mut Vec<(f64, &'a [f64])>,
+) {
+    rows.clear();
+    let weighted = block.rows().map(|(r, row)| (weight(r), row));
+    rows.extend(weighted.filter(|(w, _)| *w > 0.0));
+}
+
+/// Calls `add(i, j, v)`, `i ≥ j`, for every pair of a block's columns.
+fn products(block: &Block<'_>, rows: &[(f64, &[f64])], mut add: impl FnMut(usize, usize, f64)) {
     for (a, ca) in block.columns.iter().enumerate() {
         for (b, cb) in block.columns[..=a].iter().enumerate() {
-            let sum: f64 = rows.iter().map(|row| row[a] * row[b]).sum();
+            let sum: f64 = rows.iter().map(|(w, row)| w * row[a] * row[b]).sum();
             // Two places of one block may name the same unknown: both orders
             // of that pair belong to the one diagonal entry.
             let value = if ca == cb && a != b { 2.0 * sum } else { sum };
@@ -239,13 +171,13 @@ mod tests {
     }
 
     /// JᵀJ + diag(shift) over the residuals that count, by the definition.
-    fn dense(blocks: &Blocks, active: &[bool]) -> nalgebra::Matrix4<f64> {
+    fn dense(blocks: &Blocks, weights: &[f64]) -> nalgebra::Matrix4<f64> {
         let mut sum = nalgebra::Matrix4::from_diagonal(&SHIFT.into());
         for block in blocks.iter() {
-            for (_, row) in block.rows().filter(|(r, _)| active[*r]) {
+            for (r, row) in block.rows() {
                 let mut j = nalgebra::Vector4::zeros();
                 block.columns.iter().zip(row).for_each(|(c, v)| j[*c] += v);
-                sum += j * j.transpose();
+                sum += weights[r] * j * j.transpose();
             }
         }
         sum
@@ -254,11 +186,9 @@ mod tests {
     #[test]
     fn both_kinds_solve_the_dense_system() {
         let blocks = blocks();
-        let mut active = Vec::new();
-        blocks.active(blocks.residuals(), &mut active);
-        assert_eq!(active, [true, true, true, true, false]);
+        let weights = [1.0, 1.0, 1.0, 0.6, 0.0];
         let rhs = [1.0, -1.0, 2.0, 0.5];
-        let expected = dense(&blocks, &active)
+        let expected = dense(&blocks, &weights)
             .lu()
             .solve(&nalgebra::Vector4::from(rhs));
         let expected = expected.expect("regular");
@@ -268,7 +198,7 @@ mod tests {
             for _ in 0..2 {
                 matrix.assemble(&blocks, 4);
                 let mut x = rhs;
-                assert!(matrix.solve(&blocks, &active, &SHIFT, &mut x), "{kind:?}");
+                assert!(matrix.solve(&blocks, &weights, &SHIFT, &mut x), "{kind:?}");
                 for (x, expected) in x.iter().zip(expected.iter()) {
                     assert!(
                         (x - expected).abs() < 1e-12,
@@ -282,13 +212,13 @@ mod tests {
     #[test]
     fn a_matrix_that_is_not_positive_definite_is_told() {
         let blocks = blocks();
-        let active = [true, true, true, false, false];
+        let weights = [1.0, 1.0, 1.0, 0.0, 0.0];
         for kind in [NormalEquations::Envelope, NormalEquations::Sparse] {
             let mut matrix = NormalMatrix::new(kind, 4);
             matrix.assemble(&blocks, 4);
             let shift = [0.1, 0.1, 0.1, -1.0];
             assert!(
-                !matrix.solve(&blocks, &active, &shift, &mut [1.0; 4]),
+                !matrix.solve(&blocks, &weights, &shift, &mut [1.0; 4]),
                 "{kind:?}"
             );
         }
