@@ -131,9 +131,7 @@ shared_hulls! {
     canoe_chucno: [15.5, 4.91, 0.33];
     cbmm_sharptown_barge: [0.14];
     culler_sharptown_barge: [2.93];
-    #[ignore = "known shortfall: 0.89° on its first plate, where 0.69° is possible"]
     fastship_27m_patrol: [0.69, 0.32, 2.60];
-    #[ignore = "known shortfall: 3.48° on its second plate, where 2.12° is possible"]
     freeship_demo_tug: [5.42, 2.12, 1.49];
     freeship_motorboat_12m: [1.59, 1.56];
     seabee_kayak_sparse: [0.17, 0.06];

@@ -22,7 +22,7 @@ pub(super) struct Rulings {
     /// Iterations of all stages, and how the last one ended.
     pub(super) iterations: usize,
     pub(super) last: Option<Report>,
-    /// Ends at which the two profiles meet in a point.
+    /// Ends at which the two profiles meet in a point and run out together.
     pub(super) tips: [bool; 2],
     /// Which speeds were bounded in the end.
     pub(super) speeds: EndSpeeds,
@@ -44,8 +44,6 @@ const CLEARANCE_WEIGHT: f64 = 30.0;
 const SPACING_WEIGHT: f64 = 2e-5;
 /// The clearance is asked with this much to spare, since its bound is soft.
 const CLEARANCE_MARGIN: f64 = 0.98;
-/// Fans are asked to stay below this share of their limit, as a penalty.
-const END_MARGIN: f64 = 0.995;
 /// Ceilings that are tried: the first just below the grid's bottleneck; below
 /// a ceiling that was met the next; between one that was not and the twist
 /// reached, the middle; until that gap is closed.
@@ -67,8 +65,7 @@ pub(super) fn weights(limits: &Limits) -> Weights {
         },
         clearance: CLEARANCE_WEIGHT,
         spacing: SPACING_WEIGHT,
-        end_limit: END_MARGIN * limits.end_limit,
-        move_bound: 0.0,
+        end_limit: limits.end_limit,
         move_fairness: 0.0,
     }
 }
@@ -122,7 +119,9 @@ pub(super) fn bounds(
 
 /// The best rulings of one plate. The regression curve is kept outside; where
 /// that alone costs much twist against a bound on the speeds along the curves,
-/// that bound is used instead.
+/// that bound is used instead. Where the curves meet in a tip both run out
+/// together; a fan from the tip, which is a sliver between a curve and its
+/// chord, is used only where that costs much twist.
 ///
 /// # Errors
 /// [`FitError::Stopped`], or [`FitError::Numerical`] when the pins leave no
@@ -134,37 +133,87 @@ pub(super) fn solve(
     pins: &Pins,
     control: &dyn Control,
 ) -> Result<Rulings, FitError> {
-    let field = field(pair.map(|k| &profiles[k]), SEARCH_NODES);
-    let tips = tips(pair.map(|k| &profiles[k]));
-    let along = bounds(tips, limits, pins, EndSpeeds::AlongTheCurves, SEARCH_NODES);
-    let reachable = search::bottleneck(&field, &along, f64::INFINITY);
-    let attempt = |speeds| -> Result<Option<Rulings>, FitError> {
-        let Some(mut path) =
-            search::best_path(&field, &bounds(tips, limits, pins, speeds, SEARCH_NODES))
-        else {
-            return Ok(None);
-        };
-        path.bottleneck = path.bottleneck.min(reachable.unwrap_or(f64::INFINITY));
-        control.check()?;
-        smooth(
-            profiles,
-            pair,
-            limits,
-            (pins, speeds, tips),
-            (&path, control),
-        )
-        .map(Some)
+    let search = Search {
+        field: field(pair.map(|k| &profiles[k]), SEARCH_NODES),
+        profiles,
+        pair,
+        limits,
+        pins,
     };
-    let clear = attempt(EndSpeeds::AcrossTheRuling)?;
-    if let Some(found) = &clear
-        && reachable.is_none_or(|r| found.twist_max <= (r * DEAR_FACTOR).max(r + DEAR_ANGLE))
-    {
-        return clear.ok_or_else(no_rulings);
+    let tips = tips(pair.map(|k| &profiles[k]));
+    let held = search.with_tips(tips, control)?;
+    let open = [false; 2];
+    let reachable = |t| search.bottleneck(t, EndSpeeds::AlongTheCurves);
+    if tips == open || !held.as_ref().is_none_or(|h| h.is_dear(reachable(open))) {
+        return held.ok_or_else(no_rulings);
     }
-    let free = attempt(EndSpeeds::AlongTheCurves)?;
-    match (clear, free) {
-        (Some(a), Some(b)) => Ok(if a.twist_max <= b.twist_max { a } else { b }),
-        (a, b) => a.or(b).ok_or_else(no_rulings),
+    better(held, search.with_tips(open, control)?).ok_or_else(no_rulings)
+}
+
+/// The search for one plate's rulings.
+struct Search<'a> {
+    field: TwistField,
+    profiles: &'a [Profile],
+    pair: [usize; 2],
+    limits: &'a Limits,
+    pins: &'a Pins,
+}
+
+impl Search<'_> {
+    fn bounds(&self, tips: [bool; 2], speeds: EndSpeeds) -> Bounds {
+        bounds(tips, self.limits, self.pins, speeds, SEARCH_NODES)
+    }
+
+    fn bottleneck(&self, tips: [bool; 2], speeds: EndSpeeds) -> Option<f64> {
+        search::bottleneck(&self.field, &self.bounds(tips, speeds), f64::INFINITY)
+    }
+
+    /// The better kind of bound on the speeds.
+    fn with_tips(
+        &self,
+        tips: [bool; 2],
+        control: &dyn Control,
+    ) -> Result<Option<Rulings>, FitError> {
+        let reachable = self.bottleneck(tips, EndSpeeds::AlongTheCurves);
+        let attempt = |speeds| -> Result<Option<Rulings>, FitError> {
+            let Some(mut path) = search::best_path(&self.field, &self.bounds(tips, speeds)) else {
+                return Ok(None);
+            };
+            path.bottleneck = path.bottleneck.min(reachable.unwrap_or(f64::INFINITY));
+            control.check()?;
+            let ends = (self.pins, speeds, tips);
+            smooth(
+                self.profiles,
+                self.pair,
+                self.limits,
+                ends,
+                (&path, control),
+            )
+            .map(Some)
+        };
+        let clear = attempt(EndSpeeds::AcrossTheRuling)?;
+        if clear
+            .as_ref()
+            .is_some_and(|found| !found.is_dear(reachable))
+        {
+            return Ok(clear);
+        }
+        Ok(better(clear, attempt(EndSpeeds::AlongTheCurves)?))
+    }
+}
+
+/// The rulings with less twist; the first where they are equal.
+fn better(a: Option<Rulings>, b: Option<Rulings>) -> Option<Rulings> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(if a.twist_max <= b.twist_max { a } else { b }),
+        (a, b) => a.or(b),
+    }
+}
+
+impl Rulings {
+    /// Whether what is reachable otherwise has much less twist.
+    fn is_dear(&self, reachable: Option<f64>) -> bool {
+        reachable.is_some_and(|r| self.twist_max > (r * DEAR_FACTOR).max(r + DEAR_ANGLE))
     }
 }
 
@@ -172,8 +221,8 @@ fn no_rulings() -> FitError {
     FitError::Numerical("no monotone set of rulings joins the two profiles".into())
 }
 
-/// The clearance of the regression curve is dear when it costs more twist than
-/// this factor and this angle (radians).
+/// A wish is dear when it costs more twist than this factor and this angle
+/// (radians).
 const DEAR_FACTOR: f64 = 1.08;
 const DEAR_ANGLE: f64 = 0.0028;
 

@@ -21,6 +21,8 @@ pub(super) struct Task {
     /// Given points of each profile: index in the request, place in unit scale.
     pub(super) given: Vec<Given>,
     pub(super) limits: Limits,
+    /// The same for boundaries that move.
+    pub(super) moved_limits: Limits,
     /// Largest extension, unit scale, where ends are extended.
     pub(super) longest_extension: Option<f64>,
     pub(super) pins: Vec<Pins>,
@@ -84,13 +86,19 @@ impl Task {
         if !reader.issues.is_empty() {
             return Err(FitError::Invalid(reader.issues));
         }
-        let (limits, longest_extension) = limits(&request.options, &profiles);
+        let may_move = matches!(
+            request.options.boundary,
+            super::request::Boundary::Tolerance(_)
+        );
+        let (exact, longest_extension) = limits(&request.options, &profiles, may_move);
+        let (moved, _) = limits(&request.options, &profiles, true);
         Ok(Task {
             middle,
             size: side,
             profiles,
             given,
-            limits,
+            limits: exact,
+            moved_limits: moved,
             longest_extension,
             pins,
             centreline: -middle.y / side,
@@ -104,8 +112,8 @@ impl Task {
     }
 }
 
-fn limits(options: &Options, profiles: &[Profile]) -> (Limits, Option<f64>) {
-    let clearance = options.clearance_percent() / 100.0;
+fn limits(options: &Options, profiles: &[Profile], may_move: bool) -> (Limits, Option<f64>) {
+    let clearance = options.clearance_percent(may_move) / 100.0;
     let speed_ratio = ratio_of_clearance(clearance);
     let fan = options.max_fan_percent / 100.0;
     match options.ends {
@@ -162,7 +170,8 @@ fn check_options(request: &Request) -> Vec<Issue> {
     check("max_twist_deg", o.max_twist_deg, 1e-3, 45.0);
     check("max_fan_percent", o.max_fan_percent, 0.0, 50.0);
     check("max_extension_percent", o.max_extension_percent, 0.0, 20.0);
-    check("min_clearance_percent", o.clearance_percent(), 1.0, 50.0);
+    let clearance = o.clearance_percent(false);
+    check("min_clearance_percent", clearance, 1.0, 50.0);
     check(
         "thickness",
         o.thickness.unwrap_or(1.0),

@@ -20,7 +20,7 @@
 //! dⱼ₊₁) (fair moves) for every displacement coefficient.
 
 use super::field::SHORTEST_RULING;
-use super::movable::{Movable, MovedJet};
+use super::movable::{Displacement, Movable, MovedJet};
 use super::path::{PathPoint, PathShape};
 use super::profile::Profile;
 use super::task::{EndSpeeds, Pins};
@@ -44,8 +44,6 @@ pub(super) struct Weights {
     pub(super) spacing: f64,
     /// Largest |q| at the ends.
     pub(super) end_limit: f64,
-    /// Weight of the bound |dⱼ| ≤ δ.
-    pub(super) move_bound: f64,
     /// κ.
     pub(super) move_fairness: f64,
 }
@@ -73,8 +71,8 @@ pub(super) struct PlateModel {
     pub(super) pins: Pins,
     pub(super) speeds: EndSpeeds,
     tips: [bool; 2],
-    /// τ where it differs from plate to plate.
-    pub(super) ceiling: Option<f64>,
+    /// By how much the bound on |φ − ½| is tightened; see [`Model::tighten`].
+    tightening: f64,
     /// Positions of the path's unknowns among all unknowns.
     unknowns: Vec<usize>,
 }
@@ -94,12 +92,8 @@ pub(super) struct Model<'a> {
     dimension: usize,
 }
 
-/// Where between two samples peaks are looked for.
-const PEAK_SHARES: [f64; 3] = [0.25, 0.5, 0.75];
-/// A peak of the speeds is above its bound by this share.
-const PEAK_SHARE: f64 = 5e-4;
-
-/// How strongly the largest fan is held.
+/// Fans are held below this share of their limit, and how strongly.
+const END_MARGIN: f64 = 0.9995;
 const END_WEIGHT: f64 = 100.0;
 /// How strongly a pinned ruling is held, against angles of about 1e-2.
 const PIN_WEIGHT: f64 = 1e3;
@@ -161,7 +155,7 @@ impl<'a> Model<'a> {
                     pins,
                     speeds,
                     tips,
-                    ceiling: None,
+                    tightening: 0.0,
                     unknowns,
                 },
             )
@@ -201,66 +195,20 @@ impl<'a> Model<'a> {
     }
 
     /// Displacement coefficients of every profile.
-    pub(super) fn displacements(&self, x: &[f64]) -> Vec<Vec<Vector3<f64>>> {
+    pub(super) fn displacements(&self, x: &[f64]) -> Vec<Displacement> {
         (0..self.movables.len())
-            .map(|k| self.movables[k].coefficients(&self.moves_of(x, k)))
+            .map(|k| self.movables[k].displacement(&self.moves_of(x, k)))
             .collect()
     }
 
-    /// Twist and φ − ½ at places w of a plate.
-    pub(super) fn figures_at(&self, x: &[f64], plate: usize, places: &[f64]) -> Vec<[f64; 2]> {
-        let (y, d) = (self.path_of(x, plate), self.displacements(x));
-        let model = &self.plates[plate];
-        let figures = |w: &f64| {
-            self.ruling(plate, model.shape.at(&y, *w), &d)
-                .figures(model.speeds)
-                .map_or([0.0; 2], |[turn, share]| [turn.value, share.value])
-        };
-        places.iter().map(figures).collect()
-    }
-
-    /// Largest |θ| at the samples of a plate.
-    pub(super) fn twist_max(&self, x: &[f64], plate: usize) -> f64 {
-        let figures = self.figures_at(x, plate, self.plates[plate].shape.stations());
-        figures.iter().map(|f| f[0].abs()).fold(0.0, f64::max)
-    }
-
-    /// Largest |θ| at the samples of a plate and between them.
-    pub(super) fn twist_max_between(&self, x: &[f64], plate: usize) -> f64 {
-        let figures = self.figures_at(x, plate, &self.between(plate));
-        let between = figures.iter().map(|f| f[0].abs()).fold(0.0, f64::max);
-        between.max(self.twist_max(x, plate))
-    }
-
-    fn between(&self, plate: usize) -> Vec<f64> {
-        let inside = |pair: &[f64]| PEAK_SHARES.map(|share| pair[0] + share * (pair[1] - pair[0]));
-        let stations = self.plates[plate].shape.stations();
-        stations.windows(2).flat_map(inside).collect()
-    }
-
-    /// Places between samples where a plate's twist is above `known` or its
-    /// speeds out of bounds (an exchange step, as in Remez' algorithm).
-    pub(super) fn peaks_between(&self, x: &[f64], plate: usize, known: f64) -> Vec<f64> {
-        let places = self.between(plate);
-        let figures = self.figures_at(x, plate, &places);
-        let is_peak =
-            |f: &[f64; 2]| f[0].abs() > known || f[1].abs() > self.weights.share + PEAK_SHARE;
-        places
-            .into_iter()
-            .zip(&figures)
-            .filter(|(_, f)| is_peak(f))
-            .map(|(w, _)| w)
-            .collect()
-    }
-
-    fn end_jet(&self, profile: usize, d: &[Vec<Vector3<f64>>], s: f64) -> MovedJet {
+    fn end_jet(&self, profile: usize, d: &[Displacement], s: f64) -> MovedJet {
         match self.movables.get(profile) {
             Some(movable) => movable.at(&self.profiles[profile], &d[profile], s),
             None => MovedJet::fixed(self.profiles[profile].at(s)),
         }
     }
 
-    fn ruling(&self, plate: usize, path: PathPoint, d: &[Vec<Vector3<f64>>]) -> Ruling {
+    fn ruling(&self, plate: usize, path: PathPoint, d: &[Displacement]) -> Ruling {
         let plate = &self.plates[plate];
         let first = self.end_jet(plate.profiles[0], d, path.s);
         let second = self.end_jet(plate.profiles[1], d, path.t);
@@ -336,7 +284,7 @@ impl LeastSquares for Model<'_> {
             for i in 0..self.plates[p].shape.stations().len() {
                 let path = self.plates[p].shape.at_sample(&y, i);
                 let ruling = self.ruling(p, path, &displacements);
-                self.push_ruling(p, i, &y, &ruling, blocks);
+                self.push_ruling((p, i), &y, (&ruling, &displacements), blocks);
             }
             self.push_spacing(p, &y, blocks);
             self.push_ends(p, &y, blocks);
@@ -351,10 +299,9 @@ impl LeastSquares for Model<'_> {
 impl Model<'_> {
     fn push_ruling(
         &self,
-        plate: usize,
-        sample: usize,
+        (plate, sample): (usize, usize),
         y: &[f64],
-        ruling: &Ruling,
+        (ruling, displacements): (&Ruling, &[Displacement]),
         blocks: &mut Blocks,
     ) {
         let Some(figures) = ruling.figures(self.plates[plate].speeds) else {
@@ -365,8 +312,13 @@ impl Model<'_> {
         let scale = (self.plates[plate].shape.stations().len() as f64)
             .sqrt()
             .recip();
-        let ceiling = self.plates[plate].ceiling.unwrap_or(w.ceiling);
+        let (ceiling, bound) = (w.ceiling, w.share - self.plates[plate].tightening);
         let [turn, share] = [figures[0].value, figures[1].value];
+        let share = if share.abs() > BACKWARDS {
+            f64::NAN
+        } else {
+            share
+        };
         let [mean, top, narrow] = [
             scale * w.twist,
             scale * w.ceiling_weight,
@@ -376,14 +328,14 @@ impl Model<'_> {
             mean * turn,
             top * (turn - ceiling),
             top * (-turn - ceiling),
-            narrow * (share - w.share),
-            narrow * (-share - w.share),
+            narrow * (share - bound),
+            narrow * (-share - bound),
         ];
         let factors = [(0, mean), (0, top), (0, -top), (1, narrow), (1, -narrow)];
         let (mut columns, mut entries) = (Columns::default(), Vec::new());
         if blocks.wants_jacobian() {
             self.path_columns(plate, sample, y, (ruling, &figures), &mut columns);
-            self.move_columns(plate, (ruling, &figures), &mut columns);
+            self.move_columns(plate, (ruling, &figures), displacements, &mut columns);
             for (figure, factor) in factors {
                 entries.extend(
                     columns.entries[..columns.count]
@@ -453,12 +405,13 @@ impl Model<'_> {
         &self,
         plate: usize,
         (ruling, figures): (&Ruling, &[Figure; FIGURES]),
+        displacements: &[Displacement],
         columns: &mut Columns,
     ) {
         let ends = [(&ruling.first, -1.0), (&ruling.second, 1.0)];
         for (side, (end, sign)) in ends.into_iter().enumerate() {
             let profile = self.plates[plate].profiles[side];
-            let Some(movable) = self.movables.get(profile) else {
+            let Some(displacement) = displacements.get(profile) else {
                 continue;
             };
             for k in 0..end.values.len() {
@@ -471,8 +424,8 @@ impl Model<'_> {
                     };
                     f.gradient.by_ruling * value + by_tangent * slope
                 });
-                for (unknown, direction) in movable.directions(end.first + k) {
-                    columns.put(self.moved[profile][unknown], |f| by_move[f].dot(direction));
+                for (unknown, direction) in displacement.derivatives(end.first + k) {
+                    columns.put(self.moved[profile][*unknown], |f| by_move[f].dot(direction));
                 }
             }
         }
@@ -484,7 +437,14 @@ impl Model<'_> {
         let weight = END_WEIGHT;
         for (j, tip) in [0, y.len() - 1].into_iter().zip(plate.tips) {
             let limit = if tip { 0.0 } else { self.weights.end_limit };
-            let values = [weight * (y[j] - limit), weight * (-y[j] - limit)];
+            let held = END_MARGIN * limit;
+            let values = if y[j].abs() > limit && !tip {
+                // Outside the domain: the bound is hard, the penalty before
+                // it only keeps steps from running into it.
+                [f64::NAN; 2]
+            } else {
+                [weight * (y[j] - held), weight * (-y[j] - held)]
+            };
             blocks.push_mixed(&values, 0, &[plate.unknowns[j]], &[weight, -weight]);
         }
     }
@@ -499,18 +459,15 @@ impl Model<'_> {
         }
     }
 
-    /// Least, bounded and fair moves of one profile.
-    fn push_moves(&self, k: usize, d: &[Vector3<f64>], blocks: &mut Blocks) {
-        let movable = &self.movables[k];
-        for (j, d) in d.iter().enumerate() {
-            self.push_move_bound(k, j, d, blocks);
-        }
+    /// Least and fair moves of one profile.
+    fn push_moves(&self, k: usize, displacement: &Displacement, blocks: &mut Blocks) {
+        let d = &displacement.coefficients;
         let mut push = |terms: &[(usize, f64)]| {
             let sum: Vector3<f64> = terms.iter().map(|(j, c)| d[*j] * *c).sum();
             let (mut columns, mut entries) = (Vec::new(), [Vec::new(), Vec::new(), Vec::new()]);
             for (j, c) in terms {
-                for (unknown, direction) in movable.directions(*j) {
-                    columns.push(self.moved[k][unknown]);
+                for (unknown, direction) in displacement.derivatives(*j) {
+                    columns.push(self.moved[k][*unknown]);
                     entries
                         .iter_mut()
                         .enumerate()
@@ -531,33 +488,9 @@ impl Model<'_> {
     }
 }
 
-impl Model<'_> {
-    /// |dⱼ|/δ − 1, one-sided.
-    fn push_move_bound(&self, k: usize, j: usize, d: &Vector3<f64>, blocks: &mut Blocks) {
-        let movable = &self.movables[k];
-        let (size, weight) = (d.norm(), self.weights.move_bound);
-        let towards = if size > 0.0 {
-            d / size
-        } else {
-            Vector3::zeros()
-        };
-        let (columns, jacobian): (Vec<usize>, Vec<f64>) = movable
-            .directions(j)
-            .map(|(unknown, e)| (self.moved[k][unknown], weight * towards.dot(e)))
-            .unzip();
-        if !columns.is_empty() {
-            // Unknowns are in units of δ; see `Movable`.
-            let values = [weight * (size / movable.tolerance() - MOVE_MARGIN)];
-            let jacobian: Vec<f64> = jacobian.iter().map(|g| g / movable.tolerance()).collect();
-            blocks.push_mixed(&values, 0, &columns, &jacobian);
-        }
-    }
-}
-
-/// Moves are held below this share of the tolerance by the fit; the rest is
-/// room for what a penalty cannot hold, before the bound is made hard.
-const MOVE_MARGIN: f64 = 0.97;
-
+/// Beyond this |φ − ½| one end of the rulings runs backwards by more than a
+/// trial step may, between which a penalty can mediate: outside the domain.
+const BACKWARDS: f64 = 0.55;
 /// Residuals at a ruling, the first of them ordinary, the others one-sided.
 const ROWS: usize = 5;
 const ORDINARY: usize = 1;
@@ -589,6 +522,8 @@ impl Columns {
         self.count += 1;
     }
 }
+
+mod look;
 
 #[cfg(test)]
 mod tests;

@@ -3,9 +3,14 @@
 //! The moved curve is E = C + Σ Bⱼ(a) dⱼ in the curve's own parameter a, with
 //! cubic basis functions and coefficients dⱼ across the curve. By the convex
 //! hull property |E(a) − C(a)| ≤ max |dⱼ|, so the bound holds **everywhere**
-//! when it holds for the coefficients: the fit keeps them in their disc by a
-//! penalty, and [`Movable::bounded`] makes the bound hard. Unknowns are in
-//! units of the tolerance δ. E is exactly a B-spline wherever C is one.
+//! when it holds for the coefficients. It holds for those by their make,
+//!
+//! ```text
+//! dⱼ = δ·z/√(1 + |z|²),   z ∈ ℝ²,   |dⱼ| < δ,
+//! ```
+//!
+//! so the fit has nothing to keep and no step can leave the tolerance δ. E is
+//! exactly a B-spline wherever C is one.
 
 use super::profile::{Jet, Profile, even_shares, turning};
 use crate::geometry::bspline::basis_jet;
@@ -24,6 +29,30 @@ struct Freedom {
     offset: usize,
 }
 
+impl Freedom {
+    /// δ·z/√(1 + |z|²) with its derivatives.
+    fn displaced(&self, x: &[f64]) -> (Vector3<f64>, Vec<(usize, Vector3<f64>)>) {
+        let z = &x[self.offset..self.offset + self.directions.len()];
+        let root = z.iter().fold(1.0, |sum, v| sum + v * v).sqrt();
+        let d: Vector3<f64> = self
+            .directions
+            .iter()
+            .zip(z)
+            .map(|(e, v)| e * (v / root))
+            .sum();
+        let derivatives = self
+            .directions
+            .iter()
+            .zip(z)
+            .enumerate()
+            .map(|(k, (e, v))| {
+                let derivative = (e - d * (v / root)) / root;
+                (self.offset + k, derivative)
+            });
+        (d, derivatives.collect())
+    }
+}
+
 /// The freedom of one profile.
 #[derive(Debug, Clone)]
 pub(super) struct Movable {
@@ -32,8 +61,23 @@ pub(super) struct Movable {
     unknowns: usize,
     /// Arc-length fraction of each unknown's coefficient.
     stations: Vec<f64>,
-    /// δ, unit scale.
-    tolerance: f64,
+}
+
+/// The displacement coefficients of a profile at some unknowns.
+#[derive(Debug, Clone)]
+pub(super) struct Displacement {
+    /// dⱼ.
+    pub(super) coefficients: Vec<Vector3<f64>>,
+    /// Every coefficient's unknowns (their index among the profile's) with the
+    /// derivatives ∂dⱼ/∂z.
+    derivatives: Vec<Vec<(usize, Vector3<f64>)>>,
+}
+
+impl Displacement {
+    /// The unknowns of coefficient `j` with their derivatives ∂dⱼ/∂z.
+    pub(super) fn derivatives(&self, j: usize) -> &[(usize, Vector3<f64>)] {
+        &self.derivatives[j]
+    }
 }
 
 /// A point of a moved profile and how it depends on the displacement: the
@@ -60,7 +104,7 @@ impl MovedJet {
 }
 
 /// Steps along a profile in which its turning is measured.
-const PROBES: usize = 256;
+const PROBES: usize = 512;
 /// Points nearer than this to the plane y = 0 (unit scale) lie on it.
 const ON_CENTRELINE: f64 = 1e-9;
 
@@ -92,7 +136,6 @@ impl Movable {
             freedoms: Vec::new(),
             unknowns: 0,
             stations: Vec::new(),
-            tolerance,
         };
         for (j, parameter) in greville.into_iter().enumerate() {
             let jet = profile.curve.derivatives(parameter);
@@ -127,58 +170,28 @@ impl Movable {
         &self.stations
     }
 
-    pub(super) fn tolerance(&self) -> f64 {
-        self.tolerance
-    }
-
     /// Number of displacement coefficients.
     pub(super) fn count(&self) -> usize {
         self.freedoms.len()
     }
 
-    /// Unknowns of coefficient `j` with their derivatives ∂d/∂x.
-    pub(super) fn directions(&self, j: usize) -> impl Iterator<Item = (usize, &Vector3<f64>)> {
-        let freedom = &self.freedoms[j];
-        freedom
-            .directions
-            .iter()
-            .enumerate()
-            .map(|(k, e)| (freedom.offset + k, e))
-    }
-
-    /// Displacement coefficients.
-    pub(super) fn coefficients(&self, x: &[f64]) -> Vec<Vector3<f64>> {
-        let one = |f: &Freedom| {
-            f.directions
-                .iter()
-                .zip(&x[f.offset..])
-                .map(|(e, v)| e * *v)
-                .sum()
-        };
-        self.freedoms.iter().map(one).collect()
-    }
-
-    /// The unknowns with every coefficient inside its disc.
-    pub(super) fn bounded(&self, x: &[f64]) -> Vec<f64> {
-        let mut x = x.to_vec();
-        for freedom in &self.freedoms {
-            let mine = &mut x[freedom.offset..freedom.offset + freedom.directions.len()];
-            let size = mine.iter().map(|v| v * v).sum::<f64>().sqrt();
-            if size > 1.0 {
-                mine.iter_mut().for_each(|v| *v /= size);
-            }
+    /// Displacement coefficients and their derivatives.
+    pub(super) fn displacement(&self, x: &[f64]) -> Displacement {
+        let (coefficients, derivatives) = self.freedoms.iter().map(|f| f.displaced(x)).unzip();
+        Displacement {
+            coefficients,
+            derivatives,
         }
-        x
     }
 
     /// The moved profile at arc-length fraction `s` of the unmoved one.
-    pub(super) fn at(&self, profile: &Profile, d: &[Vector3<f64>], s: f64) -> MovedJet {
+    pub(super) fn at(&self, profile: &Profile, d: &Displacement, s: f64) -> MovedJet {
         let mut jet = profile.at(s);
         let basis = basis_jet::<3>(&self.knots, jet.parameter);
         let (b0, b1, b2) = (basis.values(), basis.derivative(1), basis.derivative(2));
         let (mut values, mut slopes) = ([0.0; DEGREE + 1], [0.0; DEGREE + 1]);
         for k in 0..=DEGREE {
-            let d = d[basis.first + k];
+            let d = d.coefficients[basis.first + k];
             values[k] = b0[k];
             slopes[k] = b1[k] * jet.speed;
             jet.point += d * values[k];
@@ -200,9 +213,9 @@ impl Movable {
     pub(super) fn moved_curve(
         &self,
         profile: &Profile,
-        d: &[Vector3<f64>],
+        d: &Displacement,
     ) -> Result<BSplineCurve, SplineError> {
-        let points = d.iter().map(|v| Point3::from(*v)).collect();
+        let points = d.coefficients.iter().map(|v| Point3::from(*v)).collect();
         let displacement = BSplineCurve::new(DEGREE, self.knots.values().to_vec(), points, None)?;
         let united = profile.curve.knot_vector().union(&self.knots)?;
         let base = profile

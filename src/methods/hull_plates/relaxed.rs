@@ -2,21 +2,21 @@
 //! all plates are solved together, so that a chine stays one curve for both
 //! of its plates.
 //!
-//! The tolerance is a hard bound by construction ([`super::movable`]). Within
-//! it the moves are the least that bring the twist down to a target: the
+//! The tolerance is a hard bound by construction ([`super::movable`]). Target
+//! and clearance are one-sided residuals, smoothed at first and sharpened from
+//! stage to stage ([`lm::Settings::smoothing`]). Within the tolerance the moves are the least that bring the twist down to a target: the
 //! weight of each coefficient's move is renewed as 1/|d| (iteratively
 //! reweighted least squares), which concentrates the moves where they are
 //! needed instead of spreading a little everywhere.
 
-use super::exact::{Rulings, end_at_tips, weights};
+use super::exact::{Rulings, end_at_tips, tips, weights};
 use super::model::{Model, PlateSpec};
-use super::movable::Movable;
+use super::movable::{Displacement, Movable};
 use super::profile::Profile;
 use super::task::{Limits, Pins};
 use crate::methods::FitError;
 use crate::solver::levenberg_marquardt::{self as lm, Settings};
-use crate::solver::{Control, Report};
-use nalgebra::Vector3;
+use crate::solver::{Control, NormalEquations, Report};
 
 /// What is asked of a relaxed fit.
 #[derive(Debug, Clone)]
@@ -28,8 +28,6 @@ pub(super) struct Task<'a> {
     pub(super) centreline: f64,
     /// Twist to aim at, radians: below it moves count more than twist.
     pub(super) target: f64,
-    /// Rounds of renewing the weights of moves and the samples.
-    pub(super) rounds: usize,
 }
 
 /// A relaxed fit.
@@ -37,37 +35,54 @@ pub(super) struct Task<'a> {
 pub(super) struct Relaxed {
     pub(super) movables: Vec<Movable>,
     /// Displacement coefficients of each profile.
-    pub(super) displacements: Vec<Vec<Vector3<f64>>>,
+    pub(super) displacements: Vec<Displacement>,
     /// Path unknowns of each plate.
     pub(super) paths: Vec<Vec<f64>>,
+    /// Largest |θ|; infinite where rulings turn back, so that it is of no use.
     pub(super) twist_max: f64,
     pub(super) iterations: usize,
     pub(super) last: Option<Report>,
 }
 
-/// Knot spans of a displacement.
-const SPANS: usize = 64;
+/// Knot spans of a displacement: enough to follow a sharp forefoot, where half
+/// as many left twice the twist.
+const SPANS: usize = 128;
 /// Excess over the target counts so much more than the mean that the target
 /// acts as a bound.
 const CEILING_WEIGHT: f64 = 30.0;
 const TWIST_WEIGHT: f64 = 0.1;
-/// Weight of moves of the size of the tolerance against twist of the target;
-/// tried from 1 to 10, ten moves least at the same twist.
+/// Weight of moves of the size of the tolerance against a twist of
+/// [`MOVE_ANGLE`] (radians, 0.02°); tried from 1 to 10, ten moves least at the
+/// same twist.
 const MOVE_WEIGHT: f64 = 10.0;
+const MOVE_ANGLE: f64 = 3.5e-4;
 /// Weight of their second differences: enough against ripple from coefficient
 /// to coefficient, too little to spread a move.
 const FAIRNESS: f64 = 0.02;
-/// Weight of the bound on moves, in the same measure.
-const BOUND_WEIGHT: f64 = 100.0;
-/// Limits of one round.
-const ITERATIONS: usize = 40;
-const REDUCTION: f64 = 1e-3;
 /// Between samples a twist above this many targets is a peak to look at.
-const PEAK: f64 = 2.0;
-/// Rounding of the paths' corners, as arc-length fraction.
-const ROUNDING: f64 = 0.01;
+const PEAK: f64 = 1.05;
+/// A plate that is still rough between so many samples is not to be had.
+const MOST_SAMPLES: usize = 1500;
 /// Moves below this share of the tolerance all count the same.
 const NEGLIGIBLE_MOVE: f64 = 0.02;
+
+/// Smoothing of the one-sided residuals in the first stage, in
+/// [`MOVE_ANGLE`]; from stage to stage it falls by a factor, and the rounding
+/// of the paths' corners (arc-length fraction) with it. The last stage solves
+/// what is delivered, but for what cannot be seen.
+const FIRST_SMOOTHING: f64 = 3.0;
+const STAGES: usize = 5;
+/// Stages after the last while the clearance is not met.
+const MORE_STAGES: usize = 4;
+const SHARPENING: f64 = 0.3;
+const FIRST_ROUNDING: f64 = 1e-2;
+const SHARPER_CORNERS: f64 = 0.1;
+/// Steps of a stage; the first goes furthest.
+const FIRST_STEPS: usize = 12;
+const STEPS: usize = 8;
+/// Factors of the clearance's weight in the first stages; the last one stays.
+const CLEARANCES: [f64; 3] = [1.0, 2.0, 4.0];
+const REDUCTION: f64 = 1e-3;
 
 /// Moves the boundaries of all plates by at most `tolerance` (unit scale),
 /// from their exact rulings.
@@ -85,7 +100,14 @@ pub(super) fn solve(
         .profiles
         .iter()
         .enumerate()
-        .map(|(k, p)| Movable::new(p, SPANS, tolerance, (task.centreline, meets(start, k))))
+        .map(|(k, p)| {
+            Movable::new(
+                p,
+                SPANS,
+                tolerance,
+                (task.centreline, meets(task.profiles, k)),
+            )
+        })
         .collect::<Result<Vec<_>, _>>()
         .map_err(|e| FitError::Numerical(e.to_string()))?;
     let plates = start
@@ -94,7 +116,7 @@ pub(super) fn solve(
         .enumerate()
         .map(|(i, (rulings, pins))| PlateSpec {
             profiles: [i, i + 1],
-            shape: rulings.shape.clone().rounded(ROUNDING),
+            shape: rulings.shape.clone(),
             pins: pins.clone(),
             speeds: rulings.speeds,
             tips: rulings.tips,
@@ -117,25 +139,42 @@ pub(super) fn solve(
     model.weights.ceiling = task.target;
     model.weights.ceiling_weight = CEILING_WEIGHT;
     model.weights.twist = TWIST_WEIGHT;
-    model.weights.move_bound = BOUND_WEIGHT * task.target;
-    let unit = task.target / tolerance;
+    let unit = MOVE_ANGLE / tolerance;
     let (mut iterations, mut last) = (0, None);
-    for _ in 0..task.rounds {
+    for k in 0..STAGES + MORE_STAGES {
         reweigh(&mut model, &x, unit, tolerance);
+        let sharpness = i32::try_from(k).unwrap_or(i32::MAX);
+        let rounding = FIRST_ROUNDING * SHARPER_CORNERS.powi(sharpness);
+        for plate in &mut model.plates {
+            plate.shape = plate.shape.clone().rounded(rounding);
+        }
+        let clearance = CLEARANCES[k.min(CLEARANCES.len() - 1)];
+        model.weights.clearance = clearance * weights(&task.limits).clearance;
         let settings = Settings {
-            iterations: ITERATIONS,
+            iterations: if k == 0 { FIRST_STEPS } else { STEPS },
+            smoothing: FIRST_SMOOTHING * MOVE_ANGLE * SHARPENING.powi(sharpness),
             reduction: REDUCTION,
+            normal_equations: NormalEquations::Sparse,
             ..Settings::default()
         };
         let report = lm::minimize(&model, &mut x, &settings, control)?;
         iterations += report.iterations;
         for p in 0..model.plates.len() {
-            let peaks = model.peaks_between(&x, p, PEAK * model.weights.ceiling);
-            if !peaks.is_empty() {
+            if k > 0 {
+                model.tighten(&x, p);
+            }
+            let known = PEAK * model.twist_max(&x, p).max(task.target);
+            let peaks = model.peaks_between(&x, p, known);
+            let samples = model.plates[p].shape.stations().len() + peaks.len();
+            if !peaks.is_empty() && samples <= MOST_SAMPLES {
                 model.plates[p].shape = model.plates[p].shape.with_more(&peaks);
             }
         }
         last = Some(report);
+        let clear = (0..model.plates.len()).all(|p| model.is_clear(&x, p));
+        if k + 1 >= STAGES && clear {
+            break;
+        }
     }
     let paths: Vec<Vec<f64>> = (0..start.len())
         .map(|p| {
@@ -145,14 +184,14 @@ pub(super) fn solve(
         })
         .collect();
     let moves: Vec<Vec<f64>> = (0..model.movables.len())
-        .map(|k| model.movables[k].bounded(&model.moves_of(&x, k)))
+        .map(|k| model.moves_of(&x, k))
         .collect();
     let x = model.gather(&paths, &moves);
     Ok(Relaxed {
         displacements: model.displacements(&x),
         paths,
         twist_max: (0..start.len())
-            .map(|p| model.twist_max_between(&x, p))
+            .map(|p| model.twist_max_everywhere(&x, p))
             .fold(0.0, f64::max),
         movables: model.movables,
         iterations,
@@ -161,9 +200,9 @@ pub(super) fn solve(
 }
 
 /// At which ends profile `k` meets a neighbour.
-fn meets(start: &[Rulings], k: usize) -> [bool; 2] {
-    let plates = [k.checked_sub(1), Some(k)].into_iter().flatten();
-    let tips = plates.filter_map(|i| start.get(i)).map(|r| r.tips);
+fn meets(profiles: &[Profile], k: usize) -> [bool; 2] {
+    let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
+    let tips = neighbours.filter_map(|i| Some(tips([&profiles[k], profiles.get(i)?])));
     tips.fold([false; 2], |a, b| [a[0] || b[0], a[1] || b[1]])
 }
 
@@ -182,9 +221,11 @@ fn place(start: &[Rulings], k: usize, s: f64) -> f64 {
 
 fn reweigh(model: &mut Model<'_>, x: &[f64], unit: f64, tolerance: f64) {
     let displacements = model.displacements(x);
-    let moved =
-        x.iter().any(|v| *v != 0.0) && displacements.iter().flatten().any(|d| d.norm() > 0.0);
+    let moved = displacements
+        .iter()
+        .any(|d| d.coefficients.iter().any(|d| d.norm() > 0.0));
     for (weights, d) in model.move_weights.iter_mut().zip(&displacements) {
+        let d = &d.coefficients;
         let share = (1.0 / d.len() as f64).sqrt();
         for (weight, d) in weights.iter_mut().zip(d) {
             let factor = if moved {
@@ -195,5 +236,6 @@ fn reweigh(model: &mut Model<'_>, x: &[f64], unit: f64, tolerance: f64) {
             *weight = MOVE_WEIGHT * unit * share * factor;
         }
     }
-    model.weights.move_fairness = FAIRNESS * unit / (displacements[0].len() as f64).sqrt();
+    model.weights.move_fairness =
+        FAIRNESS * unit / (displacements[0].coefficients.len() as f64).sqrt();
 }

@@ -9,7 +9,7 @@ use super::outcome::{
     Deviation, Fan, MovedPoint, Outcome, OutcomeProfile, Plate, PlateDiagnostics, Termination,
 };
 use super::path::PathShape;
-use super::request::{Options, Request};
+use super::request::{Boundary, Options, Request, Solver};
 use super::search;
 use super::task::EndSpeeds;
 use super::twist::twist_angle;
@@ -159,7 +159,11 @@ fn plate(
         request.profiles[i].name,
         request.profiles[i + 1].name
     );
-    let faults = faults(options, &diagnostics);
+    let faults = faults(
+        options,
+        &diagnostics,
+        (solved.moved, solved.plates[i].speeds),
+    );
     let mut extensions = [0.0; 4];
     for f in &loft.fans {
         let corner = 2 * usize::from(!f.apex_on_first) + usize::from(!f.at_start);
@@ -245,13 +249,14 @@ fn corner_warp(first: &BSplineCurve, second: &BSplineCurve) -> [f64; 2] {
     [at(0), at(1)]
 }
 
-/// The bounded discrete optimum on a fine grid, for the profiles as given.
+/// The bounded discrete optimum on a fine grid, for the profiles as given; the
+/// least demanding bounds, so that it holds for whatever was chosen.
 fn certificate(task: &Task, solved: &Solved, i: usize) -> f64 {
     let pair = [&task.profiles[i], &task.profiles[i + 1]];
     let field = exact::field(pair, CERTIFICATE_NODES);
     let speeds = EndSpeeds::AlongTheCurves;
     let bounds = exact::bounds(
-        exact::tips(pair),
+        [false; 2],
         &task.limits,
         &task.pins[i],
         speeds,
@@ -324,11 +329,20 @@ fn profile(
     })
 }
 
+/// The clearance is held at samples; between them this share of it is enough.
+const CLEARANCE_ROOM: f64 = 0.97;
+
 /// The limits that a plate breaks, each as the end of a sentence.
-fn faults(options: &Options, d: &PlateDiagnostics) -> Vec<String> {
+fn faults(
+    options: &Options,
+    d: &PlateDiagnostics,
+    (moved, speeds): (bool, EndSpeeds),
+) -> Vec<String> {
     let mut faults = Vec::new();
     if d.twist_max_deg > options.max_twist_deg {
-        let excess = if d.bottleneck_deg > options.max_twist_deg {
+        let excess = if moved {
+            "the boundary moved as far as was allowed: allow more or divide the plate".into()
+        } else if d.bottleneck_deg > options.max_twist_deg {
             format!(
                 "no set of rulings between these two curves stays within it (at least {}): \
                  allow the boundary to move (mode \"tolerance\" or \"auto\") or divide the plate",
@@ -343,6 +357,16 @@ fn faults(options: &Options, d: &PlateDiagnostics) -> Vec<String> {
         faults.push(format!(
             "rulings cross at {} place(s): the plate would fold",
             d.crossing_rulings
+        ));
+    }
+    let may_move = moved || matches!(options.boundary, Boundary::Tolerance(_));
+    let asked = options.clearance_percent(may_move) / 100.0;
+    // The paper's solver knows no such bound.
+    let bounded = speeds == EndSpeeds::AcrossTheRuling && options.solver == Solver::Own;
+    if bounded && d.regression_clearance < CLEARANCE_ROOM * asked {
+        faults.push(format!(
+            "the edge of regression comes within {:.3} ruling lengths, less than {asked:.3}",
+            d.regression_clearance
         ));
     }
     if let Some(least) = options.min_bend_radius

@@ -95,21 +95,20 @@ pub struct Options {
     pub max_extension_percent: f64,
     /// Least distance of the regression curve from the plate, in ruling
     /// lengths, as percent, in [1, 50]. `None`: 100/7 where boundaries stay
-    /// (speeds of a ruling's two ends within 1/8..8), 5 where they may move by
-    /// a tolerance (1/21..21).
+    /// (speeds of a ruling's two ends within 1/8..8), 5 where they move by a
+    /// tolerance, given or found by `auto` (1/21..21).
     pub min_clearance_percent: Option<f64>,
     /// Which algorithm.
     pub solver: Solver,
 }
 
 impl Options {
-    /// The clearance asked for, percent of a ruling's length.
+    /// The clearance asked for where boundaries stay, or where they may move;
+    /// percent of a ruling's length.
     #[must_use]
-    pub fn clearance_percent(&self) -> f64 {
-        self.min_clearance_percent.unwrap_or(match self.boundary {
-            Boundary::Tolerance(_) => 5.0,
-            Boundary::Exact | Boundary::Auto => 100.0 / 7.0,
-        })
+    pub fn clearance_percent(&self, may_move: bool) -> f64 {
+        let usual = if may_move { 5.0 } else { 100.0 / 7.0 };
+        self.min_clearance_percent.unwrap_or(usual)
     }
 }
 

@@ -8,7 +8,7 @@ use super::paper;
 use super::relaxed;
 use super::report::{Solved, SolvedPlate, SolvedShape};
 use super::request::{Boundary, Request, Solver};
-use super::task::EndSpeeds;
+use super::task::{EndSpeeds, Limits};
 use crate::geometry::BSplineCurve;
 use crate::methods::{Control, FitError};
 use rayon::prelude::*;
@@ -22,12 +22,10 @@ const GOOD_TWIST_DEG: f64 = 0.02;
 const AUTO_MARGIN: f64 = 0.95;
 /// `auto` moves a profile by at most this share of the model.
 const AUTO_LARGEST: f64 = 0.005;
-/// Tolerances tried by `auto`: each half of the one before, then bisected.
-const AUTO_HALVINGS: usize = 6;
-const AUTO_BISECTIONS: usize = 2;
-const AUTO_ROUNDS: usize = 2;
-/// Rounds of a fit within a tolerance.
-const ROUNDS: usize = 4;
+/// Tolerances tried by `auto`, from this share of the model up, each twice the
+/// one before; then bisected.
+const AUTO_SMALLEST: f64 = AUTO_LARGEST / 128.0;
+const AUTO_BISECTIONS: usize = 3;
 /// A twist above this many targets is tried again from smaller tolerances:
 /// a local optimum of a looser one must not be worse than theirs.
 const POOR: f64 = 6.0;
@@ -42,7 +40,7 @@ pub(super) fn solve(
     if request.options.solver == Solver::Paper {
         return by_the_paper(request, task, control);
     }
-    let plates = exact_plates(task, control)?;
+    let plates = exact_plates(task, &task.limits, control)?;
     control.progress("fitting", 40.0);
     let limit = request.options.max_twist_deg.to_radians();
     match request.options.boundary {
@@ -50,13 +48,13 @@ pub(super) fn solve(
         Boundary::Tolerance(value) => {
             let target = GOOD_TWIST_DEG.to_radians().min(limit * AUTO_MARGIN);
             let tolerance = value / task.size - SPARE;
-            let mut best = within(task, &plates, (tolerance, target, ROUNDS), control)?;
+            let mut best = within(task, &plates, (tolerance, target), control)?;
             for share in SMALLER {
                 let twist = best.as_ref().map_or(f64::INFINITY, |(_, twist)| *twist);
                 if twist <= POOR * target {
                     break;
                 }
-                let again = within(task, &plates, (share * tolerance, target, ROUNDS), control)?;
+                let again = within(task, &plates, (share * tolerance, target), control)?;
                 best = again.filter(|(_, other)| *other < twist).or(best);
             }
             Ok(best.map_or_else(|| unmoved(task, plates), |(solved, _)| solved))
@@ -65,18 +63,14 @@ pub(super) fn solve(
     }
 }
 
-fn exact_plates(task: &Task, control: &dyn Control) -> Result<Vec<Rulings>, FitError> {
+fn exact_plates(
+    task: &Task,
+    limits: &Limits,
+    control: &dyn Control,
+) -> Result<Vec<Rulings>, FitError> {
     (0..task.profiles.len() - 1)
         .into_par_iter()
-        .map(|i| {
-            exact::solve(
-                &task.profiles,
-                [i, i + 1],
-                &task.limits,
-                &task.pins[i],
-                control,
-            )
-        })
+        .map(|i| exact::solve(&task.profiles, [i, i + 1], limits, &task.pins[i], control))
         .collect()
 }
 
@@ -133,7 +127,7 @@ fn by_the_paper(request: &Request, task: &Task, control: &dyn Control) -> Result
 fn within(
     task: &Task,
     exact: &[Rulings],
-    (tolerance, target, rounds): (f64, f64, usize),
+    (tolerance, target): (f64, f64),
     control: &dyn Control,
 ) -> Result<Option<(Solved, f64)>, FitError> {
     let worst = |twists: &mut dyn Iterator<Item = f64>| twists.fold(0.0, f64::max);
@@ -144,11 +138,10 @@ fn within(
     let relaxed = relaxed::solve(
         &relaxed::Task {
             profiles: &task.profiles,
-            limits: task.limits,
+            limits: task.moved_limits,
             pins: &task.pins,
             centreline: task.centreline,
             target,
-            rounds,
         },
         exact,
         tolerance,
@@ -196,30 +189,31 @@ fn auto(
     if exact.iter().all(|p| p.twist_max <= limit) {
         return Ok(unmoved(task, exact));
     }
+    let start = exact_plates(task, &task.moved_limits, control)?;
+    // Aimed at the limit itself the fit moves least, but from far away it may
+    // not get there where one that is aimed at no twist at all does.
+    let targets = [limit * AUTO_MARGIN, GOOD_TWIST_DEG.to_radians()];
     let meets = |tolerance: f64| -> Result<Option<Solved>, FitError> {
-        let found = within(
-            task,
-            &exact,
-            (tolerance, limit * AUTO_MARGIN, AUTO_ROUNDS),
-            control,
-        )?;
-        Ok(found
-            .filter(|(_, twist)| *twist <= limit)
-            .map(|(solved, _)| solved))
-    };
-    let Some(mut best) = meets(AUTO_LARGEST)? else {
-        return Ok(unmoved(task, exact));
-    };
-    let (mut low, mut high) = (0.0, AUTO_LARGEST);
-    for _ in 0..AUTO_HALVINGS {
-        match meets(0.5 * high)? {
-            Some(found) => (best, high) = (found, 0.5 * high),
-            None => {
-                low = 0.5 * high;
-                break;
+        for target in targets {
+            let found = within(task, &start, (tolerance, target), control)?;
+            if let Some((solved, twist)) = found
+                && twist <= limit
+            {
+                return Ok(Some(solved));
             }
         }
-    }
+        Ok(None)
+    };
+    let (mut low, mut high) = (0.0, AUTO_SMALLEST);
+    let mut best = loop {
+        if let Some(found) = meets(high)? {
+            break found;
+        }
+        if high >= AUTO_LARGEST {
+            return Ok(unmoved(task, exact));
+        }
+        (low, high) = (high, 2.0 * high);
+    };
     for _ in 0..AUTO_BISECTIONS {
         let middle = 0.5 * (low + high);
         match meets(middle)? {

@@ -48,8 +48,7 @@ fn check(free: bool) {
         share: 0.01,
         clearance: 2.0,
         spacing: 0.01,
-        end_limit: 0.05,
-        move_bound: 0.9,
+        end_limit: 0.06,
         move_fairness: 0.8,
     };
     let plates = [EndSpeeds::AcrossTheRuling, EndSpeeds::AlongTheCurves]
