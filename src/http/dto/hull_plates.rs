@@ -68,7 +68,7 @@ pub struct HullPlatesOptions {
     /// Least distance of the edge of regression (where the plate would fold)
     /// from the plate, percent of a ruling's length. Without it 100/7, which
     /// keeps the speeds of a ruling's two ends within 1/8 to 8, or 5 (1/21 to
-    /// 21) where the boundary may move by a tolerance.
+    /// 21) where the boundary moves, by a tolerance that is given or found.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(minimum = 1, maximum = 50)]
     pub min_clearance_percent: Option<f64>,
