@@ -3,11 +3,10 @@
 
 use super::{Exit, figures, files, out, progress::Watch};
 use crate::app::Signals;
-use crate::formats::plates::HullDrawing;
-use crate::formats::{csv, obj, svg};
-use crate::http::dto::ResultDocument;
+use crate::http::dto::result::Sentences;
 use crate::http::engine::Engine;
 use crate::http::intake;
+use crate::http::methods::{self, Format};
 use crate::http::problem::{ApiError, FieldError};
 use crate::jobs::clock::SystemClock;
 use crate::jobs::{Engine as _, EngineError, Product};
@@ -21,18 +20,13 @@ pub async fn run(settings: &FitSettings) -> Exit {
         Ok(job) => job,
         Err(error) => return trouble(&error.to_string()),
     };
-    let submission = match intake::read_job(&job) {
-        Ok(submission) => submission,
+    let read = match intake::read_job(&job) {
+        Ok(read) => read,
         Err(error) => return refuse(&error),
     };
-    let watch = Arc::new(Watch::new(SystemClock::new(), submission.job.budget.time()));
-    let outcome = fit(
-        job,
-        submission.job.method.as_str(),
-        settings.workers,
-        Arc::clone(&watch),
-    )
-    .await;
+    let time = read.header().budget.time();
+    let watch = Arc::new(Watch::new(SystemClock::new(), time));
+    let outcome = fit(job, read.method(), settings.workers, Arc::clone(&watch)).await;
     watch.clear();
     match outcome {
         Ok(product) => deliver(&product, settings),
@@ -78,19 +72,21 @@ async fn fit(
 
 /// Writes the files and prints what they say.
 fn deliver(product: &Product, settings: &FitSettings) -> Exit {
-    let document: ResultDocument = match serde_json::from_slice(&product.result) {
+    let document: Sentences = match serde_json::from_slice(&product.result) {
         Ok(document) => document,
         Err(error) => return trouble(&format!("the result cannot be read back: {error}")),
     };
-    let drawing = HullDrawing::from(&document);
+    let Some(method) = methods::named(&document.method) else {
+        return trouble(&format!("no method {} wrote this result", document.method));
+    };
     let mut written = vec![files::write(&settings.out, "result.json", &product.result)];
-    for format in &settings.format {
-        let (name, text) = match format {
-            FileFormat::Obj => ("result.obj", obj::write(&drawing)),
-            FileFormat::Csv => ("result.csv", csv::ruling_table(&drawing)),
-            FileFormat::Svg => ("result.svg", svg::lines_plan(&drawing)),
-        };
-        written.push(files::write(&settings.out, name, text.as_bytes()));
+    let formats = settings.format.iter().map(|f| format_of(*f));
+    for format in formats.filter(|f| method.formats().contains(f)) {
+        let name = format!("result.{}", format.extension());
+        match method.write(format, &product.result) {
+            Ok(text) => written.push(files::write(&settings.out, &name, text.as_bytes())),
+            Err(error) => out::complain(&format!("{name}: {}", error.detail)),
+        }
     }
     for sentence in document.warnings.iter().chain(&document.summary) {
         out::line(sentence);
@@ -104,6 +100,14 @@ fn deliver(product: &Product, settings: &FitSettings) -> Exit {
         }
     }
     Exit::Done
+}
+
+fn format_of(format: FileFormat) -> Format {
+    match format {
+        FileFormat::Obj => Format::Obj,
+        FileFormat::Csv => Format::Csv,
+        FileFormat::Svg => Format::Svg,
+    }
 }
 
 fn trouble(why: &str) -> Exit {

@@ -1,11 +1,11 @@
 //! The queue's port to the methods: reads the stored body again, runs the
 //! method, writes result and diagnostics.
 
-use super::dto::ResultDocument;
-use super::intake::{self, Submission};
-use super::problem::{ApiError, FieldError};
+use super::intake;
+use super::methods::hull_plates::{Fit, PlatesJob};
+use super::methods::{Fitted, Job};
+use super::problem::{ApiError, Code, FieldError};
 use crate::jobs;
-use crate::methods::hull_plates::{self, Outcome};
 use crate::methods::{Control, FitError};
 
 /// Runs the methods of this crate on bodies as they were posted.
@@ -19,16 +19,15 @@ impl jobs::Engine for Engine {
         input: &[u8],
         control: &dyn Control,
     ) -> Result<jobs::Product, jobs::EngineError> {
-        // The body names the method itself; while there is one, reading it is
-        // choosing it.
-        run_with(hull_plates::fit, input, control)
+        // The body names the method itself.
+        let job = intake::read_job(input).map_err(|e| invalid(&e))?;
+        let fitted = job.fit(intake::sha256_hex(input), control);
+        product(&*job, fitted.map_err(engine_error)?)
     }
 }
 
-/// A fit, as [`hull_plates::fit`] is one.
-pub type Fit = fn(&hull_plates::Request, &dyn Control) -> Result<Outcome, FitError>;
-
-/// Reads a posted body, runs `fit` on it and writes what comes of it.
+/// Reads a posted job of `hull_plates`, runs `fit` on it in place of the method
+/// and writes what comes of it: how tests see a fit fail.
 ///
 /// # Errors
 /// As [`jobs::Engine::run`].
@@ -37,49 +36,28 @@ pub fn run_with(
     input: &[u8],
     control: &dyn Control,
 ) -> Result<jobs::Product, jobs::EngineError> {
-    let submission = intake::read_job(input).map_err(|e| invalid(&e))?;
-    let outcome = fit(&submission.request, control).map_err(engine_error)?;
-    product(&submission, input, &outcome)
+    let (_, value) = intake::read_value(input).map_err(|e| invalid(&e))?;
+    let job = PlatesJob::read(value)
+        .map_err(|faults| invalid(&ApiError::at(Code::InvalidJob, faults)))?;
+    let fitted = job.fit_with(fit, intake::sha256_hex(input), control);
+    product(&job, fitted.map_err(engine_error)?)
 }
 
-fn product(
-    submission: &Submission,
-    input: &[u8],
-    outcome: &Outcome,
-) -> Result<jobs::Product, jobs::EngineError> {
-    let document = ResultDocument::new(&submission.job, intake::sha256_hex(input), outcome);
+fn product(job: &dyn Job, fitted: Fitted) -> Result<jobs::Product, jobs::EngineError> {
+    // The warnings that the job did not get when it was accepted.
+    let known = job.warnings().unwrap_or_default();
+    let new = fitted.warnings.into_iter().filter(|w| !known.contains(w));
     Ok(jobs::Product {
-        result: json_line(&document)?,
-        diagnostics: json_line(&document.diagnostics)?,
-        verdict: if outcome.within_limits {
+        result: fitted.result,
+        diagnostics: fitted.diagnostics,
+        verdict: if fitted.within_limits {
             jobs::Verdict::WithinLimits
         } else {
             jobs::Verdict::OutsideLimits
         },
-        warnings: new_warnings(submission, outcome),
-        message: outcome.summary.first().cloned().unwrap_or_default(),
+        warnings: new.collect(),
+        message: fitted.message,
     })
-}
-
-/// The warnings that the job did not get when it was accepted.
-fn new_warnings(submission: &Submission, outcome: &Outcome) -> Vec<String> {
-    let known = hull_plates::validate(&submission.request).unwrap_or_default();
-    outcome
-        .warnings
-        .iter()
-        .filter(|w| !known.contains(w))
-        .cloned()
-        .collect()
-}
-
-fn json_line(value: &impl serde::Serialize) -> Result<Vec<u8>, jobs::EngineError> {
-    let mut bytes = serde_json::to_vec(value).map_err(|e| jobs::EngineError::Failed {
-        code: "unwritable-result".into(),
-        detail: format!("the result cannot be written as JSON: {e}"),
-        diagnostics: None,
-    })?;
-    bytes.push(b'\n');
-    Ok(bytes)
 }
 
 fn engine_error(error: FitError) -> jobs::EngineError {

@@ -17,6 +17,8 @@ use utoipa::ToSchema;
 pub struct Example {
     /// Its name in the path.
     pub name: &'static str,
+    /// The method that it is for.
+    pub method: &'static str,
     /// What it shows, a sentence.
     pub description: &'static str,
     /// The job, as JSON.
@@ -24,11 +26,12 @@ pub struct Example {
 }
 
 macro_rules! examples {
-    ($( $name:literal: $description:literal; )*) => {
+    ($( $name:literal, $method:literal: $description:literal; )*) => {
         /// All examples, the one to begin with first.
         pub const EXAMPLES: &[Example] = &[ $(
             Example {
                 name: $name,
+                method: $method,
                 description: $description,
                 body: include_str!(concat!("examples/", $name, ".json")),
             },
@@ -37,15 +40,15 @@ macro_rules! examples {
 }
 
 examples! {
-    "trawler": "The UBC trawler, 70 ft, four profiles as published, kept exactly: three plates \
+    "trawler", "hull_plates": "The UBC trawler, 70 ft, four profiles as published, kept exactly: three plates \
                 within 6 degrees of twist.";
-    "trawler_relaxed": "The same trawler with boundaries free within 0.0455 ft, 0.065 % of its \
+    "trawler_relaxed", "hull_plates": "The same trawler with boundaries free within 0.0455 ft, 0.065 % of its \
                         length: practically developable plates.";
-    "cone": "A quarter of a cone frustum: developable exactly, twist 0.";
-    "cylinder": "A half cylinder: developable exactly, rulings parallel.";
-    "wigley": "The Wigley hull, a round form that no plate fits: the verdict is outside_limits, \
+    "cone", "hull_plates": "A quarter of a cone frustum: developable exactly, twist 0.";
+    "cylinder", "hull_plates": "A half cylinder: developable exactly, rulings parallel.";
+    "wigley", "hull_plates": "The Wigley hull, a round form that no plate fits: the verdict is outside_limits, \
                with the reason.";
-    "punt": "The flat bottom of a punt: a plane.";
+    "punt", "hull_plates": "The flat bottom of a punt: a plane.";
 }
 
 /// The examples there are.
@@ -60,18 +63,19 @@ pub(super) struct ExampleList {
 pub(super) struct ExampleSummary {
     /// Its name.
     name: String,
+    /// The method that it is for.
+    method: String,
     /// What it shows.
     description: String,
     /// The job itself.
     href: String,
 }
 
-/// Paths of all examples.
-pub(super) fn hrefs() -> Vec<String> {
-    EXAMPLES
-        .iter()
-        .map(|e| format!("/v1/examples/{}", e.name))
-        .collect()
+impl Example {
+    /// Its path.
+    pub(super) fn href(&self) -> String {
+        format!("/v1/examples/{}", self.name)
+    }
 }
 
 /// Ready-to-post jobs
@@ -80,14 +84,12 @@ pub(super) fn hrefs() -> Vec<String> {
     responses((status = 200, description = "All examples", body = ExampleList), Everywhere),
 )]
 pub(super) async fn list(_: Asked<Nothing>) -> Response {
-    let items = EXAMPLES
-        .iter()
-        .zip(hrefs())
-        .map(|(example, href)| ExampleSummary {
-            name: example.name.into(),
-            description: example.description.into(),
-            href,
-        });
+    let items = EXAMPLES.iter().map(|example| ExampleSummary {
+        name: example.name.into(),
+        method: example.method.into(),
+        description: example.description.into(),
+        href: example.href(),
+    });
     respond::json(
         Success::Here,
         &ExampleList {
@@ -138,8 +140,10 @@ mod tests {
                 submission.is_ok(),
                 "{}: {:?}",
                 example.name,
-                submission.err()
+                submission.as_ref().err()
             );
+            let method = submission.map(|s| s.method());
+            assert_eq!(method.ok(), Some(example.method), "{}", example.name);
             assert!(example.body.ends_with('\n'), "{}", example.name);
         }
     }

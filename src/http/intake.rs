@@ -2,72 +2,75 @@
 //! schema, then what needs two values at once. The HTTP handler, the engine
 //! and the command line all come this way, so they refuse the same jobs.
 
-use super::dto::job::{BoundingBox, Counts, JobRequest, Normalized};
-use super::dto::{Point, ProfileCurve, to_request};
+use super::did_you_mean::nearest;
+use super::methods::{self, Job, Method, UNBUILT};
 use super::problem::{ApiError, Code, FieldError};
-use super::schema_check::Rule;
-use super::strict_json;
-use crate::methods::hull_plates::Request;
-use serde_json::{Map, Value};
+use super::strict_json::{self, excerpt};
+use serde_json::Value;
 use sha2::{Digest, Sha256};
-use std::sync::LazyLock;
-use utoipa::{PartialSchema, ToSchema};
-
-/// Methods that are announced but not built.
-const UNBUILT: [&str; 3] = ["cone_spline", "fairing", "curvature_net"];
-
-/// A job that is fit to be queued.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Submission {
-    /// The job as it was posted, defaults filled in.
-    pub job: JobRequest,
-    /// The same as the method takes it.
-    pub request: Request,
-}
 
 /// Reads a job.
 ///
 /// # Errors
 /// `syntax` with the place of the first fault; `method-not-available`;
 /// `invalid-job` with every broken rule.
-pub fn read_job(bytes: &[u8]) -> Result<Submission, ApiError> {
-    let value = strict_json::parse(bytes).map_err(|e| ApiError::at(Code::Syntax, vec![e]))?;
-    if let Some(name) = value["method"]
-        .as_str()
-        .filter(|name| UNBUILT.contains(name))
-    {
-        let detail = format!("{name} is planned but not built yet; hull_plates is available");
-        return Err(ApiError::new(Code::MethodNotAvailable, detail));
-    }
-    let rule = JOB_RULE.as_ref().map_err(|e| ApiError::internal(e))?;
-    let faults = rule.faults(&value);
-    if !faults.is_empty() {
-        return Err(ApiError::at(Code::InvalidJob, faults));
-    }
-    let job: JobRequest = serde_json::from_value(value).map_err(|e| {
-        // The schema has passed, so this is a gap between schema and type.
-        ApiError::at(
-            Code::InvalidJob,
-            vec![FieldError::new("", "invalid", e.to_string())],
-        )
-    })?;
-    let request = to_request(&job.input, &job.options, job.units)
-        .map_err(|faults| ApiError::at(Code::InvalidJob, faults))?;
-    Ok(Submission { job, request })
+pub fn read_job(bytes: &[u8]) -> Result<Box<dyn Job>, ApiError> {
+    let (method, value) = read_value(bytes)?;
+    method
+        .read(value)
+        .map_err(|faults| ApiError::at(Code::InvalidJob, faults))
 }
 
-/// The rule of a job, out of the schema that is published.
-static JOB_RULE: LazyLock<Result<Rule, String>> = LazyLock::new(|| {
-    let mut schemas = Vec::new();
-    JobRequest::schemas(&mut schemas);
-    let components = schemas
-        .into_iter()
-        .map(|(name, schema)| Ok((name, serde_json::to_value(schema)?)))
-        .collect::<Result<Map<String, Value>, serde_json::Error>>()
-        .map_err(|e| e.to_string())?;
-    let schema = serde_json::to_value(JobRequest::schema()).map_err(|e| e.to_string())?;
-    Rule::compile(&schema, &components)
-});
+/// As [`read_job`], up to the schema: the method and a value that keeps its
+/// rule.
+///
+/// # Errors
+/// As [`read_job`].
+pub fn read_value(bytes: &[u8]) -> Result<(&'static dyn Method, Value), ApiError> {
+    let value = strict_json::parse(bytes).map_err(|e| ApiError::at(Code::Syntax, vec![e]))?;
+    let method = method_of(&value)?;
+    let rule = method.rule().map_err(|e| ApiError::internal(e))?;
+    let faults = rule.faults(&value);
+    if faults.is_empty() {
+        Ok((method, value))
+    } else {
+        Err(ApiError::at(Code::InvalidJob, faults))
+    }
+}
+
+/// The method that a job names; its rule is that of the job.
+fn method_of(value: &Value) -> Result<&'static dyn Method, ApiError> {
+    let known = methods::names();
+    let fault = |code, message: String| FieldError::new("/method", code, message);
+    let one_of = format!("this must be one of {}", known.join(", "));
+    let fault = match &value["method"] {
+        _ if !value.is_object() => {
+            FieldError::new("", "wrong-type", "this must be an object").value(excerpt(value))
+        }
+        Value::Null if value.get("method").is_none() => {
+            fault("missing", "the field \"method\" is missing".into()).hint(one_of)
+        }
+        Value::String(name) => {
+            if let Some(method) = methods::named(name) {
+                return Ok(method);
+            }
+            if UNBUILT.contains(&name.as_str()) {
+                let detail = format!(
+                    "{name} is planned but not built yet; there are {}",
+                    known.join(", ")
+                );
+                return Err(ApiError::new(Code::MethodNotAvailable, detail));
+            }
+            let fault = fault("not-one-of", one_of).value(excerpt(&value["method"]));
+            match nearest(name, &known) {
+                Some(near) => fault.hint(format!("did you mean \"{near}\"?")),
+                None => fault,
+            }
+        }
+        other => fault("wrong-type", "this must be a string".into()).value(excerpt(other)),
+    };
+    Err(ApiError::at(Code::InvalidJob, vec![fault]))
+}
 
 /// SHA-256, hexadecimal.
 #[must_use]
@@ -82,45 +85,16 @@ pub fn sha256_hex(bytes: &[u8]) -> String {
         })
 }
 
-impl Submission {
-    /// The job as it was understood, in metres.
-    #[must_use]
-    pub fn normalized(&self) -> Normalized {
-        let metres = self.job.units.metres();
-        let profiles = &self.job.input.profiles;
-        let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        let mut count = 0;
-        for point in profiles.iter().flat_map(points) {
-            count += 1;
-            let [least, greatest] = &mut bounds;
-            for ((low, high), x) in least.iter_mut().zip(greatest).zip(point.0) {
-                *low = low.min(x * metres);
-                *high = high.max(x * metres);
-            }
-        }
-        Normalized {
-            bbox_m: BoundingBox {
-                min: Point(bounds[0]),
-                max: Point(bounds[1]),
-            },
-            counts: Counts {
-                profiles: profiles.len(),
-                plates: profiles.len().saturating_sub(1),
-                points: count,
-            },
-        }
-    }
-}
-
-/// The given points, or the control points, of a profile.
-fn points(profile: &ProfileCurve) -> impl Iterator<Item = &Point> {
-    let given = profile.points.iter().flatten();
-    given.chain(profile.bspline.iter().flat_map(|s| &s.control_points))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::http::dto::Point;
+    use crate::http::dto::hull_plates::{HullPlatesInput, HullPlatesOptions, to_request};
+    use crate::http::dto::job::Units;
+
+    fn two() -> HullPlatesInput {
+        serde_json::from_str(TWO).unwrap()
+    }
 
     fn pointers(job: &str) -> Vec<(String, String)> {
         let error = read_job(job.as_bytes()).unwrap_err();
@@ -139,22 +113,16 @@ mod tests {
                                       {"name":"b","points":[[0,1,0],[1,1,0]]}]}"#;
 
     #[test]
-    fn the_published_schema_compiles_to_a_rule() {
-        assert!(JOB_RULE.is_ok(), "{:?}", JOB_RULE.as_ref().err());
-    }
-
-    #[test]
     fn defaults_are_those_of_the_method() {
-        let submission = read_job(job(TWO, "").as_bytes()).unwrap();
+        let given: HullPlatesOptions = serde_json::from_str("{}").unwrap();
+        let options = to_request(&two(), &given, Units::M).unwrap().options;
         assert_eq!(
-            submission.request.options,
+            options,
             crate::methods::hull_plates::request::Options::default()
         );
-        let n = submission.normalized();
-        assert_eq!(
-            (n.counts.profiles, n.counts.plates, n.counts.points),
-            (2, 1, 4)
-        );
+        let n = read_job(job(TWO, "").as_bytes()).unwrap().normalized();
+        let counts: Vec<_> = n.counts.iter().map(|(k, v)| (k.as_str(), *v)).collect();
+        assert_eq!(counts, [("plates", 1), ("points", 4), ("profiles", 2)]);
         assert_eq!(n.bbox_m.max, Point([1.0, 1.0, 0.0]));
     }
 

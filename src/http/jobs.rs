@@ -4,12 +4,12 @@ use super::Api;
 use super::dto::job::{Job as JobAnswer, JobList, JobRequest, StatusWord, Validation};
 use super::extract::{Asked, Given, Id, JsonBody, Nothing, Owner, Parameters, idempotency_key};
 use super::failures::retry_seconds;
-use super::intake::{self, Submission};
+use super::intake;
+use super::methods;
 use super::openapi::{Ending, Inputs, Listing, OneJob, Submitting};
 use super::problem::{ApiError, Success};
 use super::respond;
 use crate::jobs::{Accepted, Job, ListQuery, NewJob, Status};
-use crate::methods::hull_plates;
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, header};
 use axum::response::{IntoResponse, Response};
@@ -79,9 +79,9 @@ pub(super) async fn submit(
 ) -> Result<Response, ApiError> {
     let sha = intake::sha256_hex(&body);
     let idempotency = idempotency_key(&headers, &sha)?;
-    let (submission, warnings) = check(body.clone()).await?;
+    let (posted, warnings) = check(body.clone()).await?;
     if query.validate_only {
-        let normalized = submission.normalized();
+        let normalized = posted.normalized();
         return Ok(respond::json(
             Success::Here,
             &Validation {
@@ -92,11 +92,11 @@ pub(super) async fn submit(
         ));
     }
     let new = NewJob {
-        method: submission.job.method.as_str().to_owned(),
-        label: submission.job.label,
+        method: posted.method().to_owned(),
+        label: posted.header().label.map(str::to_owned),
         input: body,
         input_sha256: sha,
-        budget: submission.job.budget.time(),
+        budget: posted.header().budget.time(),
         idempotency,
         engine_version: super::ENGINE_VERSION.to_owned(),
         warnings,
@@ -136,11 +136,11 @@ pub(super) enum JobOrValidation {
 
 /// Reads and checks a job away from the threads that answer; also what the
 /// method would warn of.
-async fn check(body: Bytes) -> Result<(Submission, Vec<String>), ApiError> {
+async fn check(body: Bytes) -> Result<(Box<dyn methods::Job>, Vec<String>), ApiError> {
     let work = move || {
-        let submission = intake::read_job(&body)?;
-        let warnings = hull_plates::validate(&submission.request)?;
-        Ok((submission, warnings))
+        let posted = intake::read_job(&body)?;
+        let warnings = posted.warnings()?;
+        Ok((posted, warnings))
     };
     match tokio::task::spawn_blocking(work).await {
         Ok(checked) => checked,

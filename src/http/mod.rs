@@ -27,6 +27,7 @@ pub mod examples;
 pub mod extract;
 pub mod failures;
 pub mod intake;
+pub mod methods;
 pub mod metrics;
 pub mod openapi;
 pub mod problem;
@@ -38,7 +39,6 @@ mod docs;
 mod health;
 mod jobs;
 mod layers;
-mod methods;
 mod results;
 
 pub use docs::Document;

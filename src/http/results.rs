@@ -5,11 +5,10 @@ use super::dto::ResultDocument;
 use super::dto::diagnostics::DiagnosticsAnswer;
 use super::extract::{Asked, Id, Nothing, Owner};
 use super::jobs::WaitQuery;
+use super::methods::{self, Format};
 use super::openapi::{Diagnosing, Files, RawBytes, Results};
 use super::problem::{ApiError, Code, Success};
 use super::respond::{self, File};
-use crate::formats::plates::HullDrawing;
-use crate::formats::{csv, obj, svg};
 use crate::jobs::{Job, JobId, QueueError, Status, Tenant};
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
@@ -17,70 +16,31 @@ use axum::response::Response;
 use bytes::Bytes;
 use serde_json::value::RawValue;
 
-/// A format in which a result can be had.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Format {
-    /// The result itself.
-    Json,
-    /// A triangle mesh.
-    Obj,
-    /// A table of rulings.
-    Csv,
-    /// A drawing of three views.
-    Svg,
+/// Writes a stored result.
+fn write(method: &str, format: Format, result: Bytes) -> Result<Bytes, ApiError> {
+    if format == Format::Json {
+        return Ok(result);
+    }
+    let method = methods::named(method)
+        .ok_or_else(|| ApiError::internal(&format!("no method {method} wrote this")))?;
+    if !method.formats().contains(&format) {
+        return Err(not_available(format.extension(), method.formats()));
+    }
+    Ok(method.write(format, &result)?.into())
 }
 
-impl Format {
-    /// All formats.
-    pub(super) const ALL: [Format; 4] = [Format::Json, Format::Obj, Format::Csv, Format::Svg];
-
-    /// The file name's ending.
-    pub(super) fn extension(self) -> &'static str {
-        match self {
-            Format::Json => "json",
-            Format::Obj => "obj",
-            Format::Csv => "csv",
-            Format::Svg => "svg",
-        }
-    }
-
-    /// The media type.
-    pub(super) fn content_type(self) -> &'static str {
-        match self {
-            Format::Json => "application/json",
-            Format::Obj => "model/obj",
-            Format::Csv => "text/csv; charset=utf-8",
-            Format::Svg => "image/svg+xml",
-        }
-    }
-
-    /// The media type without parameters.
-    fn essence(self) -> &'static str {
-        self.content_type().split(';').next().unwrap_or_default()
-    }
-
-    /// Writes a stored result.
-    fn write(self, result: Bytes) -> Result<Bytes, ApiError> {
-        let write = match self {
-            Format::Json => return Ok(result),
-            Format::Obj => obj::write,
-            Format::Csv => csv::ruling_table,
-            Format::Svg => svg::lines_plan,
-        };
-        let document: ResultDocument =
-            serde_json::from_slice(&result).map_err(|e| ApiError::internal(&e))?;
-        Ok(write(&HullDrawing::from(&document)).into())
-    }
-}
-
-/// The failure of an ending that is no format, naming those that are.
-pub(super) fn no_such_format(extension: &str) -> ApiError {
-    let known: Vec<&str> = Format::ALL.iter().map(|f| f.extension()).collect();
+fn not_available(extension: &str, formats: &[Format]) -> ApiError {
+    let known: Vec<&str> = formats.iter().map(|f| f.extension()).collect();
     let detail = format!(
         "there is no result.{extension}; there are {}",
         known.join(", ")
     );
     ApiError::new(Code::FormatNotAvailable, detail)
+}
+
+/// The failure of an ending that is no format, naming those that are.
+pub(super) fn no_such_format(extension: &str) -> ApiError {
+    not_available(extension, &Format::ALL)
 }
 
 /// The format that `Accept` likes best; JSON when it likes all the same.
@@ -139,8 +99,9 @@ async fn stored(api: &Api, owner: &Tenant, id: JobId) -> Result<(Job, Bytes), Ap
     Ok((job, bytes))
 }
 
-async fn written(format: Format, result: Bytes) -> Result<Bytes, ApiError> {
-    match tokio::task::spawn_blocking(move || format.write(result)).await {
+async fn written(job: &Job, format: Format, result: Bytes) -> Result<Bytes, ApiError> {
+    let method = job.method.clone();
+    match tokio::task::spawn_blocking(move || write(&method, format, result)).await {
         Ok(bytes) => bytes,
         Err(lost) => Err(ApiError::internal(&lost)),
     }
@@ -180,8 +141,8 @@ pub(super) async fn result(
     if let Some(wait) = query.wait {
         api.queue.wait_ended(&owner, id, wait).await?;
     }
-    let (_, result) = stored(&api, &owner, id).await?;
-    let bytes = written(format, result).await?;
+    let (job, result) = stored(&api, &owner, id).await?;
+    let bytes = written(&job, format, result).await?;
     let file = File {
         content_type: format.content_type(),
         bytes,
@@ -199,7 +160,7 @@ async fn file(
     format: Format,
 ) -> Result<Response, ApiError> {
     let (job, result) = stored(&api, &owner, id).await?;
-    let bytes = written(format, result).await?;
+    let bytes = written(&job, format, result).await?;
     let stem = job.label.unwrap_or(job.method);
     let file = File {
         content_type: format.content_type(),

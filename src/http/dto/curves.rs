@@ -1,6 +1,8 @@
 //! Points, curves and surfaces on the wire. Lengths are in the job's unit.
 
+use super::job::Units;
 use crate::geometry::{BSplineCurve, BSplineSurface};
+use crate::http::problem::FieldError;
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
@@ -78,6 +80,32 @@ fn whole<'de, D: serde::Deserializer<'de>>(reader: D) -> Result<usize, D::Error>
         return Ok(x as usize);
     }
     Err(D::Error::custom("not a whole number"))
+}
+
+/// `None` for an infinite (or undefined) figure, which JSON cannot say.
+#[must_use]
+pub(super) fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+/// Coordinates stay below this, in metres: larger ones are a slip of the unit.
+const LARGEST_COORDINATE_M: f64 = 1e6;
+
+/// Adds a fault for every coordinate that is beyond the limit in its unit.
+pub(super) fn check_points(points: &[Point], at: &str, units: Units, faults: &mut Vec<FieldError>) {
+    let limit = LARGEST_COORDINATE_M / units.metres();
+    for (i, point) in points.iter().enumerate() {
+        for (axis, x) in point.0.iter().enumerate().filter(|(_, x)| x.abs() >= limit) {
+            let message = format!(
+                "{x:e} {units} is {:e} m, beyond the limit of 1e6 m",
+                x * units.metres()
+            );
+            faults.push(
+                FieldError::new(format!("{at}/{i}/{axis}"), "out-of-range", message)
+                    .hint("is \"units\" right?"),
+            );
+        }
+    }
 }
 
 /// See [`whole`]; for the other DTOs.

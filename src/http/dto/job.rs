@@ -4,6 +4,7 @@ use super::hull_plates::{HullPlatesInput, HullPlatesOptions};
 use crate::http::problem::FieldError;
 use crate::jobs;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::time::Duration;
 use utoipa::ToSchema;
@@ -13,28 +14,59 @@ use uuid::Uuid;
 /// takes, far below what would block a worker for others.
 pub const DEFAULT_BUDGET_S: f64 = 60.0;
 
-/// A job as it is posted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct JobRequest {
-    /// The fitting method.
-    pub method: MethodName,
-    /// Your own name for the job; it becomes the name of result files.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[schema(min_length = 1, max_length = 200, examples("UBC trawler"))]
-    pub label: Option<String>,
-    /// The unit of all lengths in the job and in its result, unless a name
-    /// says otherwise (`_m`, `_deg`, `_percent`). There is no default.
-    pub units: Units,
-    /// What the method takes.
-    pub input: HullPlatesInput,
-    /// What is asked of it; everything has a default.
-    #[serde(default)]
-    pub options: HullPlatesOptions,
-    /// What it may use.
-    #[serde(default)]
-    pub budget: Budget,
+/// A job as it is posted: one shape for each method.
+#[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum JobRequest {
+    /// Developable plates between a hull's profile curves.
+    HullPlates(HullPlatesJob),
 }
+
+macro_rules! job_of_a_method {
+    ($job:ident, $method:ident, $word:literal, $variant:ident, $input:ty, $options:ty, $doc:literal) => {
+        #[doc = $doc]
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $job {
+            /// The fitting method.
+            pub method: $method,
+            /// Your own name for the job; it becomes the name of result files.
+            #[serde(default, skip_serializing_if = "Option::is_none")]
+            #[schema(min_length = 1, max_length = 200, examples("UBC trawler"))]
+            pub label: Option<String>,
+            /// The unit of all lengths in the job and in its result, unless a
+            /// name says otherwise (`_m`, `_deg`, `_percent`). There is no
+            /// default.
+            pub units: Units,
+            /// What the method takes.
+            pub input: $input,
+            /// What is asked of it; everything has a default.
+            #[serde(default)]
+            pub options: $options,
+            /// What it may use.
+            #[serde(default)]
+            pub budget: Budget,
+        }
+
+        #[doc = concat!("The word `", $word, "`.")]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+        #[serde(rename_all = "snake_case")]
+        pub enum $method {
+            #[doc = $doc]
+            $variant,
+        }
+    };
+}
+
+job_of_a_method!(
+    HullPlatesJob,
+    HullPlatesMethod,
+    "hull_plates",
+    HullPlates,
+    HullPlatesInput,
+    HullPlatesOptions,
+    "A job for developable plates between a hull's profile curves."
+);
 
 /// What a job may use.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -59,24 +91,6 @@ impl Budget {
     #[must_use]
     pub fn time(&self) -> Duration {
         Duration::try_from_secs_f64(self.time_s).unwrap_or(Duration::from_secs(60))
-    }
-}
-
-/// The fitting methods that are built.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MethodName {
-    /// Developable plates between a hull's profile curves.
-    HullPlates,
-}
-
-impl MethodName {
-    /// The word on the wire.
-    #[must_use]
-    pub fn as_str(self) -> &'static str {
-        match self {
-            MethodName::HullPlates => "hull_plates",
-        }
     }
 }
 
@@ -351,8 +365,8 @@ pub struct Validation {
 pub struct Normalized {
     /// Box around all given points, in metres: least and greatest x, y, z.
     pub bbox_m: BoundingBox,
-    /// How much there is.
-    pub counts: Counts,
+    /// How much there is, by name: profiles, plates, points and so on.
+    pub counts: BTreeMap<String, usize>,
 }
 
 /// A box in metres.
@@ -362,15 +376,4 @@ pub struct BoundingBox {
     pub min: super::Point,
     /// Greatest x, y, z.
     pub max: super::Point,
-}
-
-/// How much a job holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Counts {
-    /// Profile curves.
-    pub profiles: usize,
-    /// Plates between them.
-    pub plates: usize,
-    /// Given points and control points, all profiles together.
-    pub points: usize,
 }

@@ -4,14 +4,10 @@
 
 pub mod curves;
 pub mod diagnostics;
-pub mod drawing;
 pub mod hull_plates;
 pub mod job;
 pub mod result;
-mod to_request;
 
 pub use curves::{Point, Spline, Surface};
-pub use hull_plates::{HullPlatesInput, HullPlatesOptions, ProfileCurve};
 pub use job::JobRequest;
 pub use result::ResultDocument;
-pub use to_request::to_request;

@@ -5,12 +5,12 @@
 //! checks what needs two values at once (the unit and a coordinate, knots and
 //! degree, a pin and the number of plates), each with its JSON pointer.
 
-use super::curves::{Point, Spline};
-use super::hull_plates::{
+use super::super::curves::{Spline, check_points};
+use super::super::job::Units;
+use super::{
     BoundaryMode, BoundaryOption, EndsOption, HullPlatesInput, HullPlatesOptions,
     PinnedRulingOption, ProfileCurve, SolverOption,
 };
-use super::job::Units;
 use crate::geometry::BSplineCurve;
 use crate::http::problem::FieldError;
 use crate::http::strict_json::MAX_POINTS;
@@ -19,8 +19,6 @@ use crate::methods::hull_plates::request::{
 };
 use nalgebra::Point3;
 
-/// Coordinates stay below this, in metres: larger ones are a slip of the unit.
-const LARGEST_COORDINATE_M: f64 = 1e6;
 /// The method's request out of a job's input and options.
 ///
 /// # Errors
@@ -87,22 +85,6 @@ fn profile(
         name: given.name.clone(),
         shape,
     })
-}
-
-fn check_points(points: &[Point], at: &str, units: Units, faults: &mut Vec<FieldError>) {
-    let limit = LARGEST_COORDINATE_M / units.metres();
-    for (i, point) in points.iter().enumerate() {
-        for (axis, x) in point.0.iter().enumerate().filter(|(_, x)| x.abs() >= limit) {
-            let message = format!(
-                "{x:e} {units} is {:e} m, beyond the limit of 1e6 m",
-                x * units.metres()
-            );
-            faults.push(
-                FieldError::new(format!("{at}/{i}/{axis}"), "out-of-range", message)
-                    .hint("is \"units\" right?"),
-            );
-        }
-    }
 }
 
 /// Checks counts and order with pointers of their own; what remains is said by

@@ -1,6 +1,15 @@
 //! The job of `hull_plates` on the wire. Bounds of single values are written
 //! here, as the schema that is published and checked; its way into the
-//! method's request is [`to_request`](super::to_request).
+//! method's request is [`to_request`].
+
+mod diagnostics;
+mod drawing;
+mod result;
+mod to_request;
+
+pub use diagnostics::{HullPlatesDiagnostics, PlateFigures};
+pub use result::HullPlatesResult;
+pub use to_request::to_request;
 
 use super::curves::{Point, Spline, whole_number};
 use crate::methods::hull_plates::request::{Ends, Options, Solver};

@@ -1,28 +1,29 @@
 //! `/v1/methods`: what each fitting method takes and gives, out of the same
 //! schemas that check the jobs.
 
-use super::Api;
-use super::dto::{HullPlatesInput, HullPlatesOptions};
-use super::extract::{Asked, Nothing};
-use super::openapi::{Everywhere, OneMethod};
-use super::problem::{ApiError, Code, Success};
-use super::respond;
+use super::Method;
+use crate::http::Api;
+use crate::http::examples::EXAMPLES;
+use crate::http::extract::{Asked, Nothing};
+use crate::http::openapi::{Everywhere, OneMethod};
+use crate::http::problem::{ApiError, Code, Success};
+use crate::http::respond;
 use axum::extract::Path;
 use axum::response::Response;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use utoipa::{PartialSchema, ToSchema};
+use utoipa::ToSchema;
 
 /// The methods there are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub(super) struct MethodList {
+pub(in crate::http) struct MethodList {
     /// One each.
     items: Vec<MethodSummary>,
 }
 
 /// A method in a sentence.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub(super) struct MethodSummary {
+pub(in crate::http) struct MethodSummary {
     /// Its name in a job.
     name: String,
     /// What it does.
@@ -33,7 +34,7 @@ pub(super) struct MethodSummary {
 
 /// A method: what it takes and gives.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub(super) struct MethodDescription {
+pub(in crate::http) struct MethodDescription {
     /// Its name in a job.
     name: String,
     /// What it does.
@@ -56,7 +57,7 @@ pub(super) struct MethodDescription {
 
 /// A field of a job.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub(super) struct FieldDescription {
+pub(in crate::http) struct FieldDescription {
     /// Its name.
     name: String,
     /// What it is, in words.
@@ -75,88 +76,62 @@ pub(super) struct FieldDescription {
 
 /// Something that a result holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub(super) struct Gift {
+pub(in crate::http) struct Gift {
     /// Where in the result.
     field: String,
     /// What it is.
     description: String,
 }
 
-const NAME: &str = "hull_plates";
-const SUMMARY: &str =
-    "Plates that bend from flat steel or plywood between the profile curves of a hull.";
-const DESCRIPTION: &str = "Two neighbouring profiles bound a plate. Its rulings are chosen so \
-    that the surface normals at the two ends of each differ as little as possible (twist): by a \
-    search over all pairs of points for the best set of rulings, then by least squares. The \
-    boundary is kept exactly, or moved within a tolerance that holds everywhere. Fans at the ends, \
-    the distance of the edge of regression and bend radii are bounded, so that a yard can bend \
-    what is delivered.";
-const SOURCE: &str = "After Zheng & Bo 2018 and Bo, Zheng, Zhang 2019 (arXiv 1905.07518); the \
-    discrete optimum after Wang & Tang 2005.";
+/// What a method says of itself; the rest comes out of its schemas.
+#[derive(Debug, Clone, Copy)]
+pub struct Words {
+    /// What it does.
+    pub summary: &'static str,
+    /// How it does it.
+    pub description: &'static str,
+    /// Where it comes from.
+    pub source: &'static str,
+    /// Lengths among the options that do not carry a unit in their name.
+    pub lengths: &'static [&'static str],
+    /// What a result holds, and where.
+    pub gifts: &'static [(&'static str, &'static str)],
+}
 
-/// Lengths among the options that do not carry a unit in their name.
-const LENGTHS: [&str; 3] = ["thickness", "min_bend_radius", "boundary"];
-
-const GIFTS: [(&str, &str); 7] = [
-    ("verdict", "within_limits or outside_limits"),
-    (
-        "summary",
-        "One sentence for the job, then one a plate, with the reason",
-    ),
-    (
-        "surfaces",
-        "One B-spline surface a plate, degree [3,1], control points [u][v]",
-    ),
-    ("curves", "The profiles as the plates share them"),
-    (
-        "method_specific.plates",
-        "Rulings with twist and bend radii, fans, extensions",
-    ),
-    (
-        "method_specific.profiles",
-        "How far each profile was moved, and which points",
-    ),
-    (
-        "diagnostics",
-        "Twist (max, mean, 95 %), corner warp, the discrete optimum, clearance, bend \
-      radius, strain, curvature, area, termination",
-    ),
-];
-
-fn summary() -> MethodSummary {
+fn summary(method: &dyn Method) -> MethodSummary {
     MethodSummary {
-        name: NAME.into(),
-        summary: SUMMARY.into(),
-        href: format!("/v1/methods/{NAME}"),
+        name: method.name().into(),
+        summary: method.words().summary.into(),
+        href: format!("/v1/methods/{}", method.name()),
     }
 }
 
-fn description() -> MethodDescription {
+fn description(method: &dyn Method) -> MethodDescription {
+    let words = method.words();
+    let schemas = method.schemas();
+    let examples = EXAMPLES.iter().filter(|e| e.method == method.name());
     MethodDescription {
-        name: NAME.into(),
-        summary: SUMMARY.into(),
-        description: DESCRIPTION.into(),
-        source: SOURCE.into(),
-        input: fields::<HullPlatesInput>(&Value::Null),
-        options: fields::<HullPlatesOptions>(
-            &serde_json::to_value(HullPlatesOptions::default()).unwrap_or_default(),
-        ),
-        gives: GIFTS
+        name: method.name().into(),
+        summary: words.summary.into(),
+        description: words.description.into(),
+        source: words.source.into(),
+        input: fields(&schemas.input, &Value::Null, words.lengths),
+        options: fields(&schemas.options, &schemas.defaults, words.lengths),
+        gives: (words.gifts.iter())
             .map(|(field, text)| Gift {
-                field: field.into(),
-                description: text.into(),
+                field: (*field).into(),
+                description: (*text).into(),
             })
-            .into(),
-        formats: super::results::Format::ALL
+            .collect(),
+        formats: (method.formats().iter())
             .map(|f| f.extension().to_owned())
-            .into(),
-        examples: super::examples::hrefs(),
+            .collect(),
+        examples: examples.map(|e| e.href()).collect(),
     }
 }
 
 /// The fields of a schema, with defaults from the type itself.
-fn fields<T: PartialSchema>(defaults: &Value) -> Vec<FieldDescription> {
-    let schema = serde_json::to_value(T::schema()).unwrap_or_default();
+fn fields(schema: &Value, defaults: &Value, lengths: &[&str]) -> Vec<FieldDescription> {
     let required = schema["required"].as_array().cloned().unwrap_or_default();
     let properties = schema["properties"]
         .as_object()
@@ -170,7 +145,7 @@ fn fields<T: PartialSchema>(defaults: &Value) -> Vec<FieldDescription> {
                 .unwrap_or_default()
                 .replace('\n', " "),
             required: required.contains(&Value::from(name.as_str())),
-            unit: unit(&name).map(str::to_owned),
+            unit: unit(&name, lengths).map(str::to_owned),
             default: defaults[&name].clone(),
             schema: {
                 if let Some(fields) = field.as_object_mut() {
@@ -184,8 +159,8 @@ fn fields<T: PartialSchema>(defaults: &Value) -> Vec<FieldDescription> {
         .collect()
 }
 
-fn unit(name: &str) -> Option<&'static str> {
-    if LENGTHS.contains(&name) {
+fn unit(name: &str, lengths: &[&str]) -> Option<&'static str> {
+    if lengths.contains(&name) {
         Some("length")
     } else if name.ends_with("_deg") {
         Some("degrees")
@@ -201,11 +176,11 @@ fn unit(name: &str) -> Option<&'static str> {
     get, path = "/v1/methods", tag = "methods", operation_id = "list_methods",
     responses((status = 200, description = "All methods", body = MethodList), Everywhere),
 )]
-pub(super) async fn list(_: Asked<Nothing>) -> Response {
+pub(in crate::http) async fn list(_: Asked<Nothing>) -> Response {
     respond::json(
         Success::Here,
         &MethodList {
-            items: vec![summary()],
+            items: super::METHODS.iter().map(|m| summary(*m)).collect(),
         },
     )
 }
@@ -216,16 +191,20 @@ pub(super) async fn list(_: Asked<Nothing>) -> Response {
     params(("name" = String, Path, description = "Its name", example = "hull_plates")),
     responses((status = 200, description = "The method", body = MethodDescription), OneMethod),
 )]
-pub(super) async fn get(Path(name): Path<String>, _: Asked<Nothing>) -> Result<Response, ApiError> {
-    if name != NAME {
-        let detail = format!("there is no method {name:?}; there is {NAME}");
-        return Err(ApiError::new(Code::MethodNotFound, detail));
-    }
-    Ok(respond::json(Success::Here, &description()))
+pub(in crate::http) async fn get(
+    Path(name): Path<String>,
+    _: Asked<Nothing>,
+) -> Result<Response, ApiError> {
+    let method = super::named(&name).ok_or_else(|| {
+        let known = super::names().join(", ");
+        let detail = format!("there is no method {name:?}; there are {known}");
+        ApiError::new(Code::MethodNotFound, detail)
+    })?;
+    Ok(respond::json(Success::Here, &description(method)))
 }
 
 /// The routes of this resource.
-pub(super) fn routes() -> utoipa_axum::router::OpenApiRouter<Api> {
+pub(in crate::http) fn routes() -> utoipa_axum::router::OpenApiRouter<Api> {
     utoipa_axum::router::OpenApiRouter::new()
         .routes(utoipa_axum::routes!(list))
         .routes(utoipa_axum::routes!(get))

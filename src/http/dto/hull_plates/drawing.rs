@@ -1,14 +1,14 @@
 //! From a stored result to what the file writers draw.
 
-use super::result::{PlateResult, ResultDocument, RulingResult};
+use super::result::{HullPlatesResult, PlateResult, RulingResult};
 use crate::formats::plates::{HullDrawing, PlateDrawing, ProfileLine, RulingLine};
 use crate::http::dto::job::VerdictWord;
 
 /// The title of a drawing whose job has no label.
 const UNTITLED: &str = "Hull plates";
 
-impl From<&ResultDocument> for HullDrawing {
-    fn from(result: &ResultDocument) -> Self {
+impl From<&HullPlatesResult> for HullDrawing {
+    fn from(result: &HullPlatesResult) -> Self {
         let plates = &result.method_specific.plates;
         HullDrawing {
             title: result.label.clone().unwrap_or_else(|| UNTITLED.to_owned()),
@@ -51,7 +51,7 @@ impl From<&RulingResult> for RulingLine {
 /// Each profile through the ruling ends on it, which the mesh uses too: of the
 /// plate that begins there, or for the last profile of the plate that ends
 /// there.
-fn profile_lines(result: &ResultDocument) -> Vec<ProfileLine> {
+fn profile_lines(result: &HullPlatesResult) -> Vec<ProfileLine> {
     let plates = &result.method_specific.plates;
     let points = |i: usize| match (plates.get(i), plates.last()) {
         (Some(plate), _) => plate.rulings.iter().map(|r| r.from.into()).collect(),
