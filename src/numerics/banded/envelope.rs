@@ -152,6 +152,15 @@ impl EnvelopeMatrix {
         self.values[self.shape.start[i + 1] - 1] += value;
     }
 
+    /// Adds `scale` times a matrix with the same envelope.
+    ///
+    /// # Panics
+    /// If the envelopes differ, a mistake of the programme.
+    pub fn add_scaled(&mut self, other: &EnvelopeMatrix, scale: f64) {
+        assert_eq!(self.shape, other.shape, "matrices of different envelopes");
+        axpy(scale, &other.values, &mut self.values);
+    }
+
     /// `y = A x`.
     #[must_use]
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {

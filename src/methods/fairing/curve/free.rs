@@ -1,0 +1,116 @@
+//! The fit without a tolerance: the stiffness from the noise of the points.
+
+use super::energy::{Energy, Quadratic};
+use super::holds::Holds;
+use super::relax::Balance;
+use super::space::{Space, Vector};
+use super::springs::{Gram, Springs};
+use super::stiffness::{Choice, Offsets};
+use crate::solver::{Control, Stop};
+
+/// A curve with its springs.
+#[derive(Debug, Clone)]
+pub(super) struct Shape<const D: usize> {
+    /// The splines.
+    pub(super) space: Space,
+    /// Coefficients.
+    pub(super) x: Vec<Vector<D>>,
+    /// The energy with its weights along the curve.
+    pub(super) energy: Energy,
+}
+
+/// Rounds of feet, stiffness and Gauss–Newton.
+const MOST_ROUNDS: usize = 12;
+/// Gauss–Newton steps a round.
+const STEPS: usize = 4;
+/// A step that lowers the cost by less than this share ends a round.
+const ENOUGH: f64 = 1e-4;
+/// Longest step of a foot, as a share of the domain.
+const REACH: f64 = 0.05;
+/// Curvature times length up to which a bend is gentle: that of four full
+/// circles. Ship curves stay below; noses of aerofoils lie far above.
+const GENTLE: f64 = 8.0 * std::f64::consts::PI;
+/// What may be left of a hold, unit scale.
+pub(super) const HELD: f64 = 1e-11;
+/// Change of ln λ that does not change the curve visibly.
+const SETTLED: f64 = 0.05;
+
+/// Energy of the first shape: jerk, and so little of the others that they
+/// matter only where two or three points leave the curve undetermined.
+const FIRST_ENERGY: Quadratic = [1e-12, 1e-9, 1.0];
+
+/// The curve of the quadratic energy ∫ |r‴|² du at the stiffness that the
+/// points suggest, with their feet where they are.
+///
+/// `None` if the points and the spline do not determine a curve.
+pub(super) fn first_shape<const D: usize>(
+    space: Space,
+    springs: &Springs<D>,
+    quadratic: Option<Quadratic>,
+) -> Option<Shape<D>> {
+    let gram = springs.gram(&space, &vec![Vector::zeros(); space.unknowns()]);
+    let model = Offsets::linear(&space, &FIRST_ENERGY, &gram);
+    let choice = model.choose(None);
+    let (x, ..) = model.solve(choice.stiffness)?;
+    let energy = Energy::new(&space, quadratic);
+    Some(Shape { space, x, energy })
+}
+
+/// Fits `shape` to its springs; the stiffness comes from the points.
+///
+/// # Errors
+/// When the control says stop.
+pub(super) fn settle<const D: usize>(
+    shape: &mut Shape<D>,
+    springs: &mut Springs<D>,
+    holds: &mut Holds<D>,
+    control: &dyn Control,
+) -> Result<Choice, Stop> {
+    let [a, b] = shape.space.domain();
+    let reach = REACH * (b - a);
+    let mut choice: Option<Choice> = None;
+    for round in 0..MOST_ROUNDS {
+        control.check()?;
+        springs.refresh(&shape.space, &shape.x, reach);
+        let gram = springs.gram(&shape.space, &shape.x);
+        shape.relieve();
+        let near = choice.map(|c| c.likeliest);
+        let offsets = Offsets::about(&shape.space, &shape.energy, &gram, &shape.x);
+        let next = if gram.count > 0 {
+            offsets.choose(near)
+        } else {
+            offsets.soft()
+        };
+        holds.weigh(next.stiffness * offsets.mean_stiffness());
+        holds.follow(springs.held_feet());
+        shape.balance(&gram, holds, next.stiffness);
+        let unheld = holds.tighten(&shape.space, &shape.x);
+        let change = |c: Choice| (c.stiffness.ln() - next.stiffness.ln()).abs();
+        let steady = choice.is_some_and(|c| change(c) < SETTLED);
+        choice = Some(next);
+        if steady && round >= 2 && unheld <= HELD {
+            break;
+        }
+    }
+    Ok(choice.expect("there is at least one round"))
+}
+
+impl<const D: usize> Shape<D> {
+    /// Weighs the energy by the present curvature.
+    pub(super) fn relieve(&mut self) {
+        let [a, b] = self.space.domain();
+        self.energy.relieve(&self.space, &self.x, GENTLE / (b - a));
+    }
+
+    /// Gauss–Newton steps at a stiffness.
+    pub(super) fn balance(&mut self, gram: &Gram<D>, holds: &Holds<D>, stiffness: f64) -> usize {
+        Balance {
+            space: &self.space,
+            energy: &self.energy,
+            gram,
+            holds,
+            stiffness,
+        }
+        .relax(&mut self.x, STEPS, ENOUGH)
+    }
+}

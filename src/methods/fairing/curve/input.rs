@@ -1,0 +1,500 @@
+//! From the request to points in unit scale: the longest side of their box is
+//! 1 and its middle the origin, so that every constant means the same on a
+//! kayak in millimetres and a tanker in feet. Points of space that lie in one
+//! plane are fitted in that plane.
+
+use super::request::{Options, Request, Solver};
+use super::space::Vector;
+use crate::methods::{FitError, Issue};
+use nalgebra::{Point3, Vector3};
+
+/// Coordinates beyond this have no room left for the sixth digit.
+const FARTHEST: f64 = 1e12;
+/// Points this near to a plane, as a share of the size, lie in it.
+const COPLANAR: f64 = 1e-9;
+/// Neighbours nearer than this share of the size are one point.
+const REPEATED: f64 = 1e-12;
+/// Chords that meet at the seam of a loop at a greater angle make a corner.
+const SEAM_CORNER_DEG: f64 = 60.0;
+/// Tolerances below this share of the size are 0: rounding.
+const EXACT: f64 = 1e-9;
+
+/// A Cartesian frame with a scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Frame {
+    middle: Vector3<f64>,
+    axes: [Vector3<f64>; 3],
+    /// Length of 1 in the user's unit.
+    pub(super) size: f64,
+}
+
+impl Frame {
+    /// A point in unit scale.
+    pub(super) fn enter<const D: usize>(&self, p: &Point3<f64>) -> Vector<D> {
+        self.enter_direction(&((p.coords - self.middle) / self.size))
+    }
+
+    /// A direction, turned only.
+    pub(super) fn enter_direction<const D: usize>(&self, v: &Vector3<f64>) -> Vector<D> {
+        Vector::from_fn(|i, _| self.axes[i].dot(v))
+    }
+
+    /// A point of unit scale in the user's.
+    pub(super) fn leave<const D: usize>(&self, v: &Vector<D>) -> Point3<f64> {
+        let turned: Vector3<f64> = (0..D).map(|i| self.axes[i] * v[i]).sum();
+        Point3::from(turned * self.size + self.middle)
+    }
+
+    /// A direction of unit scale in the user's frame.
+    pub(super) fn leave_direction(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        (0..3).map(|i| self.axes[i] * v[i]).sum()
+    }
+}
+
+/// What the frame of a request is: its dimension and whether it is turned.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Prepared {
+    /// The frame.
+    pub(super) frame: Frame,
+    /// 2 or 3 after finding planes.
+    pub(super) dimension: usize,
+    /// Indices of the points that count, in their order.
+    pub(super) kept: Vec<usize>,
+    /// For every point of the request, the position in `kept` that stands for
+    /// it.
+    pub(super) stands_for: Vec<usize>,
+    /// Whether the curve is closed, where that is known.
+    pub(super) closed: Option<bool>,
+    /// What the user should know.
+    pub(super) warnings: Vec<String>,
+}
+
+/// A task in unit scale.
+#[derive(Debug, Clone)]
+pub(super) struct Task<const D: usize> {
+    /// Points.
+    pub(super) points: Vec<Vector<D>>,
+    /// Tolerances; infinite where there is none, 0 where the point is locked.
+    pub(super) tolerances: Vec<f64>,
+    /// Relative weights of the springs.
+    pub(super) weights: Vec<f64>,
+    /// 1 for axes in which feet must agree with their points.
+    pub(super) metric: Vector<D>,
+    /// Positions of knuckles.
+    pub(super) knuckles: Vec<usize>,
+    /// Straight stretches, by position.
+    pub(super) straight: Vec<[usize; 2]>,
+    /// Unit tangents at the ends.
+    pub(super) tangents: [Option<Vector<D>>; 2],
+    /// Curvatures at the ends.
+    pub(super) curvatures: [Option<f64>; 2],
+}
+
+impl<const D: usize> Task<D> {
+    /// The task of a prepared request.
+    pub(super) fn new(request: &Request, prepared: &Prepared) -> Self {
+        let o = &request.options;
+        let frame = &prepared.frame;
+        let at = |i: &usize| prepared.stands_for[*i];
+        let tolerance = |i: usize| {
+            if o.locked.contains(&i) {
+                return 0.0;
+            }
+            let own = o.tolerances.get(i).copied().or(o.tolerance);
+            match own.map(|t| t / frame.size) {
+                Some(t) if t <= EXACT => 0.0,
+                Some(t) => t,
+                None => f64::INFINITY,
+            }
+        };
+        let unit = |v: Vector3<f64>| frame.enter_direction::<D>(&v).normalize();
+        let mut free = [true; 3];
+        free.copy_from_slice(&o.freedom);
+        let metric = if free.iter().take(request.dimension).all(|f| *f) {
+            Vector::repeat(1.0)
+        } else {
+            // The plane of a plane curve is then parallel to the axes.
+            let fixed = Vector3::from_fn(|i, _| f64::from(u8::from(!free[i])));
+            Vector::from_fn(|i, _| frame.axes[i].abs().dot(&fixed))
+        };
+        Task {
+            points: prepared.kept.iter().map(|i| frame.enter(&request.points[*i])).collect(),
+            tolerances: prepared.kept.iter().map(|i| tolerance(*i)).collect(),
+            weights: prepared
+                .kept
+                .iter()
+                .map(|i| o.stiffness.get(*i).copied().unwrap_or(1.0))
+                .collect(),
+            metric,
+            knuckles: sorted(o.knuckles.iter().map(at)),
+            straight: o.straight.iter().map(|[a, b]| [at(a), at(b)]).collect(),
+            tangents: o.end_tangents.map(|t| t.map(unit)),
+            curvatures: o.end_curvatures.map(|k| k.map(|k| k * frame.size)),
+        }
+    }
+
+    /// Whether any point has a tolerance that is not 0.
+    pub(super) fn has_tolerance(&self) -> bool {
+        self.tolerances.iter().any(|t| t.is_finite() && *t > 0.0)
+    }
+}
+
+fn sorted(values: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut all: Vec<usize> = values.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+fn path(segments: &[&str]) -> Vec<String> {
+    segments.iter().map(|s| (*s).to_string()).collect()
+}
+
+/// All that is wrong with a request.
+struct Complaints(Vec<Issue>);
+
+impl Complaints {
+    fn add(&mut self, at: &[&str], code: &'static str, message: String, hint: Option<&str>) {
+        self.0.push(Issue {
+            path: path(at),
+            code,
+            message,
+            hint: hint.map(Into::into),
+        });
+    }
+}
+
+/// Reads a request.
+///
+/// # Errors
+/// [`FitError::Invalid`] with every issue found.
+pub(super) fn prepare(request: &Request) -> Result<Prepared, FitError> {
+    let mut issues = Complaints(Vec::new());
+    check_points(request, &mut issues);
+    check_options(request, &mut issues);
+    check_indices(request, &mut issues);
+    if !issues.0.is_empty() {
+        return Err(FitError::Invalid(issues.0));
+    }
+    let (frame, dimension) = frame_of(request);
+    let mut prepared = Prepared {
+        frame,
+        dimension,
+        kept: Vec::new(),
+        stands_for: Vec::with_capacity(request.points.len()),
+        closed: request.closed.or(request.ordered.then_some(false)),
+        warnings: Vec::new(),
+    };
+    merge_repeated(request, &mut prepared);
+    if prepared.kept.len() < 2 {
+        issues.add(
+            &["input", "points"],
+            "too-few-points",
+            format!("{} point(s) given, all equal; a curve needs two", request.points.len()),
+            None,
+        );
+        return Err(FitError::Invalid(issues.0));
+    }
+    check_kept(request, &prepared, &mut issues);
+    if issues.0.is_empty() {
+        Ok(prepared)
+    } else {
+        Err(FitError::Invalid(issues.0))
+    }
+}
+
+fn check_points(request: &Request, issues: &mut Complaints) {
+    if !(2..=3).contains(&request.dimension) {
+        let message = format!("the dimension is {}; it must be 2 or 3", request.dimension);
+        issues.add(&["input", "dimension"], "out-of-range", message, None);
+    }
+    if request.points.len() < 2 {
+        let message = format!("{} point(s) given; a curve needs two", request.points.len());
+        issues.add(&["input", "points"], "too-few-points", message, None);
+    }
+    for (i, p) in request.points.iter().enumerate() {
+        let used = &p.coords.as_slice()[..request.dimension.clamp(2, 3)];
+        let at = i.to_string();
+        if used.iter().any(|c| !c.is_finite()) {
+            let message = format!("point {i} has a coordinate that is not a finite number");
+            issues.add(&["input", "points", &at], "not-finite", message, None);
+        } else if used.iter().any(|c| c.abs() > FARTHEST) {
+            let message = format!("point {i} lies beyond {FARTHEST:e}");
+            issues.add(&["input", "points", &at], "out-of-range", message, None);
+        }
+    }
+}
+
+fn check_options(request: &Request, issues: &mut Complaints) {
+    let o = &request.options;
+    let count = request.points.len();
+    let hint = Some("give a length in the unit of the points, 0 to pass through them");
+    if let Some(t) = o.tolerance
+        && !(t >= 0.0 && t.is_finite())
+    {
+        let message = format!("the tolerance is {t}; it must not be negative");
+        issues.add(&["options", "tolerance"], "out-of-range", message, hint);
+    }
+    let lists = [("tolerances", &o.tolerances, 0.0), ("stiffness", &o.stiffness, f64::MIN_POSITIVE)];
+    for (name, values, least) in lists {
+        if !values.is_empty() && values.len() != count {
+            let message = format!("{name} has {} values for {count} points", values.len());
+            issues.add(&["options", name], "wrong-count", message, None);
+        }
+        for (i, v) in values.iter().enumerate() {
+            if !(*v >= least && v.is_finite()) {
+                let message = format!("the value for point {i} is {v}");
+                let hint = Some("tolerances must be ≥ 0, stiffnesses > 0");
+                issues.add(&["options", name, &i.to_string()], "out-of-range", message, hint);
+            }
+        }
+    }
+    if !o.freedom.iter().take(request.dimension.min(3)).any(|f| *f) {
+        let message = "no axis is free: no point may move".to_string();
+        let hint = Some("name at least one of the axes x, y, z that the points have");
+        issues.add(&["options", "freedom"], "no-freedom", message, hint);
+    }
+    check_shape_options(request, issues);
+}
+
+fn check_shape_options(request: &Request, issues: &mut Complaints) {
+    let o = &request.options;
+    if let Some(d) = o.degree
+        && !(3..=7).contains(&d)
+    {
+        let message = format!("the degree is {d}; it must lie between 3 and 7");
+        issues.add(&["options", "degree"], "out-of-range", message, None);
+    }
+    let degree = degree_of(o);
+    if let Some(n) = o.control_points
+        && !(n > degree && n <= MOST_CONTROL_POINTS)
+    {
+        let message = format!("{n} control points asked with degree {degree}");
+        let hint = Some("more than the degree, at most 20,000");
+        issues.add(&["options", "control_points"], "out-of-range", message, hint);
+    }
+    if let Some(e) = o.energy {
+        let all = [("tension", e.tension), ("bending", e.bending), ("jerk", e.jerk)];
+        for (name, v) in all {
+            if !(v >= 0.0 && v.is_finite()) {
+                let message = format!("{name} is {v}; it must not be negative");
+                issues.add(&["options", "energy", name], "out-of-range", message, None);
+            }
+        }
+        if all.iter().all(|(_, v)| *v == 0.0) {
+            let message = "all weights of the energy are 0: every curve would be fair".into();
+            issues.add(&["options", "energy"], "no-energy", message, None);
+        }
+    }
+    for (k, end) in ["0", "1"].into_iter().enumerate() {
+        if let Some(t) = o.end_tangents[k]
+            && !(t.iter().all(|c| c.is_finite()) && t.norm() > 0.0)
+        {
+            let message = "the end tangent must be a finite vector other than 0".to_string();
+            issues.add(&["options", "end_tangents", end], "out-of-range", message, None);
+        }
+        if let Some(c) = o.end_curvatures[k]
+            && !c.is_finite()
+        {
+            let message = "the end curvature must be a finite number".to_string();
+            issues.add(&["options", "end_curvatures", end], "out-of-range", message, None);
+        }
+    }
+}
+
+/// A control net beyond this is a mistake.
+const MOST_CONTROL_POINTS: usize = 20_000;
+
+/// The degree asked, or the solver's own.
+pub(super) fn degree_of(options: &Options) -> usize {
+    options.degree.unwrap_or(match options.solver {
+        Solver::Own => 5,
+        Solver::Paper => 3,
+    })
+}
+
+fn check_indices(request: &Request, issues: &mut Complaints) {
+    let o = &request.options;
+    let count = request.points.len();
+    let check = |issues: &mut Complaints, at: &[&str], i: usize| {
+        if i >= count {
+            let message = format!("there is no point {i}; there are {count}, counted from 0");
+            issues.add(at, "no-such-point", message, None);
+        }
+    };
+    for (name, list) in [("locked", &o.locked), ("knuckles", &o.knuckles)] {
+        for (k, i) in list.iter().enumerate() {
+            check(issues, &["options", name, &k.to_string()], *i);
+        }
+    }
+    for (k, [a, b]) in o.straight.iter().enumerate() {
+        let at = k.to_string();
+        check(issues, &["options", "straight", &at, "0"], *a);
+        check(issues, &["options", "straight", &at, "1"], *b);
+        if a >= b {
+            let message = format!("the straight stretch runs from point {a} to point {b}");
+            let hint = Some("name its first point first");
+            issues.add(&["options", "straight", &at], "empty-stretch", message, hint);
+        }
+    }
+    let needs_order = [("knuckles", o.knuckles.is_empty()), ("straight", o.straight.is_empty())];
+    for (name, empty) in needs_order {
+        if !request.ordered && !empty {
+            let message = format!("{name} need points in their order");
+            issues.add(&["options", name], "needs-order", message, None);
+        }
+    }
+}
+
+/// Checks that need the points without repetitions.
+fn check_kept(request: &Request, prepared: &Prepared, issues: &mut Complaints) {
+    let closed = prepared.closed == Some(true);
+    if closed && prepared.kept.len() < 3 {
+        let message = format!("{} distinct points; a closed curve needs three", prepared.kept.len());
+        issues.add(&["input", "points"], "too-few-points", message, None);
+    }
+    for k in 0..2 {
+        let end = k.to_string();
+        if closed && request.options.end_tangents[k].is_some() {
+            let message = "a closed curve has no ends".to_string();
+            issues.add(&["options", "end_tangents", &end], "no-ends", message, None);
+        }
+        if closed && request.options.end_curvatures[k].is_some() {
+            let message = "a closed curve has no ends".to_string();
+            issues.add(&["options", "end_curvatures", &end], "no-ends", message, None);
+        }
+    }
+}
+
+/// The frame of the points' box, turned into their plane if they have one.
+fn frame_of(request: &Request) -> (Frame, usize) {
+    let flat = |p: &Point3<f64>| match request.dimension {
+        2 => Vector3::new(p.x, p.y, 0.0),
+        _ => p.coords,
+    };
+    let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    for p in &request.points {
+        low = low.inf(&flat(p));
+        high = high.sup(&flat(p));
+    }
+    let size = (high - low).max();
+    let frame = Frame {
+        middle: 0.5 * (low + high),
+        axes: [Vector3::x(), Vector3::y(), Vector3::z()],
+        size: if size > 0.0 { size } else { 1.0 },
+    };
+    if request.dimension == 2 {
+        return (frame, 2);
+    }
+    match plane_axes(request, &frame) {
+        Some((axes, shift)) => {
+            let middle = frame.middle + shift * frame.size;
+            (Frame { axes, middle, ..frame }, 2)
+        }
+        None => (frame, 3),
+    }
+}
+
+/// Axes of the plane that holds all points and end tangents; parallel to the
+/// user's axes where the plane is, and only then if points are not free in
+/// all directions. Also the way into the plane from the frame's middle, in
+/// unit scale.
+fn plane_axes(request: &Request, frame: &Frame) -> Option<([Vector3<f64>; 3], Vector3<f64>)> {
+    let o = &request.options;
+    let mut spread = nalgebra::Matrix3::zeros();
+    let unit: Vec<Vector3<f64>> = request
+        .points
+        .iter()
+        .map(|p| (p.coords - frame.middle) / frame.size)
+        .collect();
+    let mean = unit.iter().sum::<Vector3<f64>>() / unit.len() as f64;
+    for v in &unit {
+        spread += (v - mean) * (v - mean).transpose();
+    }
+    let eigen = spread.symmetric_eigen();
+    let thinnest = eigen.eigenvalues.imin();
+    let normal: Vector3<f64> = eigen.eigenvectors.column(thinnest).into();
+    let flat = |n: &Vector3<f64>| {
+        unit.iter().all(|v| n.dot(&(v - mean)).abs() <= COPLANAR)
+            && o.end_tangents
+                .iter()
+                .flatten()
+                .all(|t| n.dot(&t.normalize()).abs() <= COPLANAR)
+    };
+    let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
+    // The user's own planes first, so that signs of curvature mean the same.
+    for axes in [[x, y, z], [x, z, -y], [y, z, x]] {
+        if flat(&axes[2]) {
+            return Some((axes, axes[2] * axes[2].dot(&mean)));
+        }
+    }
+    if !flat(&normal) || !o.freedom.iter().all(|f| *f) {
+        return None;
+    }
+    let other = if normal.x.abs() < 0.8 { x } else { y };
+    let first = (other - normal * normal.dot(&other)).normalize();
+    Some(([first, normal.cross(&first), normal], normal * normal.dot(&mean)))
+}
+
+/// Drops points that repeat their forerunner, and the last one of a closed
+/// curve that repeats the first.
+fn merge_repeated(request: &Request, prepared: &mut Prepared) {
+    let near = REPEATED * prepared.frame.size;
+    let place = |i: usize| {
+        let p = request.points[i];
+        if request.dimension == 2 {
+            Point3::new(p.x, p.y, 0.0)
+        } else {
+            p
+        }
+    };
+    let mut repeated = Vec::new();
+    for i in 0..request.points.len() {
+        match prepared.kept.last() {
+            Some(last) if request.ordered && (place(i) - place(*last)).norm() <= near => {
+                repeated.push(i);
+            }
+            _ => prepared.kept.push(i),
+        }
+        prepared.stands_for.push(prepared.kept.len() - 1);
+    }
+    if let Some(first) = repeated.first() {
+        prepared.warnings.push(format!(
+            "/input/points/{first} repeats the point before it{}; such points count once.",
+            if repeated.len() > 1 {
+                format!(" (as do {} more)", repeated.len() - 1)
+            } else {
+                String::new()
+            }
+        ));
+    }
+    let count = prepared.kept.len();
+    let ends_meet = count > 3
+        && (place(prepared.kept[0]) - place(prepared.kept[count - 1])).norm() <= near;
+    if !request.ordered || !ends_meet || request.closed == Some(false) {
+        return;
+    }
+    if request.closed.is_none() {
+        let chord = |a: usize, b: usize| place(prepared.kept[b]) - place(prepared.kept[a]);
+        let turn = chord(0, 1).angle(&chord(count - 2, count - 1)).to_degrees();
+        if turn > SEAM_CORNER_DEG {
+            prepared.warnings.push(format!(
+                "The last point repeats the first and the curve turns by {turn:.0}° there: it is \
+                 taken as open, with its ends in one corner; say closed: true to round it."
+            ));
+            return;
+        }
+        prepared.closed = Some(true);
+        prepared.warnings.push(
+            "The last point repeats the first: the curve is taken as closed and smooth there; \
+             say closed: false to keep a corner."
+                .into(),
+        );
+    }
+    prepared.kept.pop();
+    for slot in &mut prepared.stands_for {
+        if *slot == count - 1 {
+            *slot = 0;
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Fair curves through points of the plane or of space.
+
+mod energy;
+mod fairness;
+mod free;
+mod holds;
+mod input;
+mod net;
+pub mod outcome;
+mod reach;
+mod relax;
+mod report;
+pub mod request;
+mod sentences;
+mod slips;
+mod solve;
+mod space;
+mod springs;
+mod start;
+mod stiffness;
+mod within;
+
+pub use outcome::Outcome;
+pub use request::Request;
+
+use crate::methods::{FitError, Issue};
+use crate::solver::Control;
+use input::{Prepared, Task};
+use solve::Traced;
+
+/// Fits a fair curve.
+///
+/// # Errors
+/// [`FitError::Invalid`] for unusable input, [`FitError::Stopped`] when the
+/// control says so, [`FitError::Numerical`] where the points and wishes leave
+/// no curve.
+pub fn fit(request: &Request, control: &dyn Control) -> Result<Outcome, FitError> {
+    control.progress("reading", 0.0);
+    let prepared = input::prepare(request)?;
+    match prepared.dimension {
+        2 => fit_in::<2>(request, &prepared, control),
+        _ => fit_in::<3>(request, &prepared, control),
+    }
+}
+
+fn fit_in<const D: usize>(
+    request: &Request,
+    prepared: &Prepared,
+    control: &dyn Control,
+) -> Result<Outcome, FitError> {
+    let task = Task::<D>::new(request, prepared);
+    control.progress("ordering", 5.0);
+    let closed = prepared.closed == Some(true);
+    let (parameters, domain) = start::ordered_parameters(&task.points, closed);
+    let traced = Traced {
+        parameters,
+        domain,
+        closed,
+    };
+    control.progress("fairing", 15.0);
+    let solved = solve::solve(request, &task, &traced, control)?;
+    control.progress("measuring", 90.0);
+    report::outcome(request, prepared, &traced, &solved, control)
+}
+
+/// Everything that is wrong with a request; empty if it can be fitted.
+#[must_use]
+pub fn validate(request: &Request) -> Vec<Issue> {
+    match input::prepare(request) {
+        Err(FitError::Invalid(issues)) => issues,
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,395 @@
+//! From a task to a fair curve: start, free fit, net, slips, tolerances.
+
+use super::energy::Quadratic;
+use super::free::{HELD, Shape, first_shape, settle};
+use super::holds::{Condition, Holds};
+use super::input::{Task, degree_of};
+use super::net::{FIRST_SPANS, MOST_SPANS, misses_shape};
+use super::reach::{reach, worst};
+use super::request::{Options, Request};
+use super::slips::{Suspect, suspects};
+use super::space::Vector;
+use super::springs::{Gram, Springs};
+use super::start::{Breaks, space_for};
+use super::stiffness::{Choice, Offsets};
+use super::within::{Bounds, Terms, fairest};
+use crate::methods::FitError;
+use crate::solver::{Control, Stop};
+
+/// Points with their parameters along a first curve.
+#[derive(Debug, Clone)]
+pub(super) struct Traced {
+    /// A parameter for each point.
+    pub(super) parameters: Vec<f64>,
+    /// First and last parameter.
+    pub(super) domain: [f64; 2],
+    /// Whether the curve is closed.
+    pub(super) closed: bool,
+}
+
+/// A fair curve with all that is known about it, in unit scale.
+#[derive(Debug, Clone)]
+pub(super) struct Solved<const D: usize> {
+    /// The curve.
+    pub(super) shape: Shape<D>,
+    /// The points with their feet.
+    pub(super) springs: Springs<D>,
+    /// Noise and stiffness of the fit without tolerances.
+    pub(super) choice: Choice,
+    /// Multiplier of each point's bound; empty without tolerances.
+    pub(super) duals: Vec<f64>,
+    /// Duality gap.
+    pub(super) gap: Option<f64>,
+    /// Steps of the last solver.
+    pub(super) steps: usize,
+    /// Why the control points are as many as they are.
+    pub(super) net: &'static str,
+    /// Points that look like slips.
+    pub(super) suspects: Vec<Suspect<D>>,
+    /// Largest share of a tolerance in use; 0 without.
+    pub(super) used: f64,
+    /// Tolerances as used: infinite for disregarded points.
+    pub(super) tolerances: Vec<f64>,
+    /// Tolerance factor, largest share used, energy, largest move.
+    pub(super) trade_off: Vec<[f64; 4]>,
+}
+
+/// The state that the stages share.
+pub(super) struct Bench<'a, const D: usize> {
+    pub(super) task: &'a Task<D>,
+    pub(super) traced: &'a Traced,
+    pub(super) options: &'a Options,
+    pub(super) control: &'a dyn Control,
+    pub(super) quadratic: Option<Quadratic>,
+}
+
+/// Solves a task with this crate's own solver.
+///
+/// # Errors
+/// When the control says stop, or where a system cannot be solved.
+pub(super) fn solve<const D: usize>(
+    request: &Request,
+    task: &Task<D>,
+    traced: &Traced,
+    control: &dyn Control,
+) -> Result<Solved<D>, FitError> {
+    let bench = Bench {
+        task,
+        traced,
+        options: &request.options,
+        control,
+        quadratic: request.options.energy.map(|e| [e.tension, e.bending, e.jerk]),
+    };
+    let mut fit = bench.free()?;
+    control.progress("slips", 50.0);
+    let suspects = suspects(&fit.shape, &fit.springs, &fit.choice, control)?;
+    let mut tolerances = task.tolerances.clone();
+    if request.options.robust && !suspects.is_empty() {
+        for s in &suspects {
+            fit.springs.weights[s.index] = 0.0;
+            tolerances[s.index] = f64::INFINITY;
+        }
+        fit.choice = settle(&mut fit.shape, &mut fit.springs, &mut fit.holds, control)?;
+    }
+    control.progress("fairing", 60.0);
+    let mut solved = Solved {
+        choice: fit.choice,
+        duals: Vec::new(),
+        gap: None,
+        steps: 0,
+        net: fit.net,
+        suspects,
+        used: 0.0,
+        trade_off: Vec::new(),
+        shape: fit.shape.clone(),
+        springs: fit.springs.clone(),
+        tolerances,
+    };
+    if task.has_tolerance() {
+        bench.within(fit, &mut solved)?;
+    }
+    Ok(solved)
+}
+
+/// A free fit.
+pub(super) struct Free<const D: usize> {
+    pub(super) shape: Shape<D>,
+    pub(super) springs: Springs<D>,
+    pub(super) holds: Holds<D>,
+    pub(super) choice: Choice,
+    pub(super) net: &'static str,
+    pub(super) spans: usize,
+}
+
+impl<const D: usize> Bench<'_, D> {
+    /// The fit without tolerances, with as many spans as the shape needs.
+    fn free(&self) -> Result<Free<D>, FitError> {
+        let most = self.most_spans();
+        let (mut spans, mut net) = match self.asked_spans() {
+            Some(n) => (n, "asked"),
+            None if most <= FIRST_SPANS => (most, "one a point"),
+            None => (FIRST_SPANS, "enough for the shape"),
+        };
+        loop {
+            self.control.check()?;
+            let fit = self.fit_with(spans, net)?;
+            let residuals = fit.springs.residuals(&fit.shape.space, &fit.shape.x);
+            let poor = fit.choice.noise > 0.0
+                && misses_shape(&fit.shape.space, &fit.springs, &residuals, fit.choice.noise);
+            if net == "asked" || spans >= most || !poor {
+                return Ok(fit);
+            }
+            spans = (2 * spans).min(most);
+            if spans == most {
+                net = "one a point";
+            }
+        }
+    }
+
+    fn intervals(&self) -> usize {
+        let n = self.task.points.len();
+        if self.traced.closed { n } else { n - 1 }
+    }
+
+    fn most_spans(&self) -> usize {
+        let least = if self.traced.closed { 2 * self.degree() + 2 } else { 1 };
+        self.intervals().clamp(least, MOST_SPANS)
+    }
+
+    fn degree(&self) -> usize {
+        degree_of(self.options)
+    }
+
+    fn asked_spans(&self) -> Option<usize> {
+        let degree = self.degree();
+        self.options.control_points.map(|n| {
+            if self.traced.closed {
+                // A clamped closed curve has degree more control points than
+                // the closed polygon.
+                n.saturating_sub(degree).max(2 * degree + 2)
+            } else {
+                n.saturating_sub(degree).max(1)
+            }
+        })
+    }
+
+    /// The free fit in a space of `spans` spans.
+    pub(super) fn fit_with(&self, spans: usize, net: &'static str) -> Result<Free<D>, FitError> {
+        let breaks = self.breaks();
+        let t = self.traced;
+        let data = (&t.parameters[..], t.domain, t.closed);
+        let space = space_for(self.degree(), data, spans, &breaks)
+            .map_err(|e| FitError::Numerical(e.to_string()))?;
+        let mut springs = self.springs();
+        let broken = || FitError::Numerical("the points do not determine a curve".into());
+        let mut shape = first_shape(space, &springs, self.quadratic).ok_or_else(broken)?;
+        let held = self.held();
+        let mut holds = self.holds(&shape, &held);
+        for i in &held {
+            springs.weights[*i] = 0.0;
+        }
+        springs.held = held;
+        let choice = settle(&mut shape, &mut springs, &mut holds, self.control)?;
+        if !shape.x.iter().all(|v| v.iter().all(|c| c.is_finite())) {
+            return Err(broken());
+        }
+        Ok(Free {
+            shape,
+            springs,
+            holds,
+            choice,
+            net,
+            spans,
+        })
+    }
+
+    fn springs(&self) -> Springs<D> {
+        let mut springs = Springs::new(
+            self.task.points.clone(),
+            self.task.weights.clone(),
+            self.traced.parameters.clone(),
+            self.task.metric,
+        );
+        springs.pin(self.ends());
+        springs.pin(self.task.knuckles.iter().copied());
+        for [a, b] in &self.task.straight {
+            springs.pin([*a, *b]);
+        }
+        springs
+    }
+
+    /// The points at the two ends of an open curve.
+    fn ends(&self) -> Vec<usize> {
+        if self.traced.closed {
+            return Vec::new();
+        }
+        let u = &self.traced.parameters;
+        let by = |a: &usize, b: &usize| u[*a].total_cmp(&u[*b]);
+        let all = || 0..u.len();
+        all().min_by(by).into_iter().chain(all().max_by(by)).collect()
+    }
+
+    /// Points that must stay.
+    fn held(&self) -> Vec<usize> {
+        (0..self.task.points.len())
+            .filter(|i| self.task.tolerances[*i] == 0.0)
+            .collect()
+    }
+
+    fn breaks(&self) -> Breaks {
+        let u = &self.traced.parameters;
+        let [a, b] = self.traced.domain;
+        let inside = |t: &f64| *t > a && *t < b;
+        Breaks {
+            corners: self.task.knuckles.iter().map(|i| u[*i]).filter(inside).collect(),
+            joints: self.task.straight.iter().flatten().map(|i| u[*i]).filter(inside).collect(),
+        }
+    }
+
+    fn holds(&self, shape: &Shape<D>, held: &[usize]) -> Holds<D> {
+        let mut holds = Holds::none();
+        let (t, u) = (self.task, &self.traced.parameters);
+        for i in held {
+            let place = Condition::Place(t.points[*i], Vector::repeat(1.0));
+            holds.push(u[*i], place, true);
+        }
+        for k in 0..2 {
+            let end = self.traced.domain[k];
+            if let Some(direction) = t.tangents[k] {
+                holds.push(end, Condition::Direction(direction), false);
+            }
+            if let Some(curvature) = t.curvatures[k] {
+                holds.push(end, Condition::Curvature(curvature), false);
+            }
+        }
+        if t.metric.iter().any(|m| *m != 1.0) {
+            // Ends have no foot to find: they keep the coordinates that are
+            // not free.
+            for i in self.ends().into_iter().filter(|i| !held.contains(i)) {
+                holds.push(u[i], Condition::Place(t.points[i], t.metric), false);
+            }
+        }
+        for [a, b] in &t.straight {
+            holds.straighten(&shape.energy.nodes, [u[*a], u[*b]]);
+        }
+        holds
+    }
+
+    /// The fairest curve within the tolerances, in a richer space if need be.
+    fn within(&self, mut fit: Free<D>, solved: &mut Solved<D>) -> Result<(), FitError> {
+        let most = self.most_spans();
+        let weights = fit.springs.weights.clone();
+        let mut used = self.approach(&mut fit, &solved.tolerances)?;
+        while used > 1.0 && fit.spans < most && fit.net != "asked" {
+            let mut richer = self.fit_with((2 * fit.spans).min(most), "the tolerance")?;
+            richer.springs.weights.clone_from(&weights);
+            let next = self.approach(&mut richer, &solved.tolerances)?;
+            if next < used {
+                (fit, used) = (richer, next);
+            } else {
+                fit.spans = richer.spans;
+            }
+        }
+        solved.net = fit.net;
+        if used >= 1.0 {
+            solved.used = used;
+            solved.shape = fit.shape;
+            solved.springs = fit.springs;
+            return Ok(());
+        }
+        let inner = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
+        let best = self.walk(&mut fit, &solved.tolerances)?;
+        solved.duals = best.duals;
+        solved.gap = Some(best.gap);
+        solved.steps = best.steps;
+        solved.used = worst(&fit.shape, &fit.springs, &solved.tolerances);
+        solved.shape = fit.shape.clone();
+        solved.springs = fit.springs.clone();
+        (fit.shape, fit.springs, fit.holds) = inner;
+        self.trade_off(fit, solved)
+    }
+
+    fn approach(&self, fit: &mut Free<D>, tolerances: &[f64]) -> Result<f64, Stop> {
+        let stiffness = fit.choice.stiffness;
+        let given = (tolerances, stiffness);
+        reach(&mut fit.shape, &mut fit.springs, given, &mut fit.holds, self.control)
+    }
+
+    /// The interior point walk, with the multipliers of the holds around it.
+    fn walk(&self, fit: &mut Free<D>, tolerances: &[f64]) -> Result<super::within::Fairest, Stop> {
+        /// Rounds for the multipliers.
+        const ROUNDS: usize = 6;
+        let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
+        let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
+        fit.holds.weigh(offsets.mean_stiffness());
+        let lazy = self.lazy(fit, tolerances);
+        let mut result = None;
+        for _ in 0..ROUNDS {
+            fit.holds.follow(fit.springs.held_feet());
+            let terms = Terms {
+                space: &fit.shape.space,
+                energy: &fit.shape.energy,
+                holds: &fit.holds,
+                bounds: Bounds {
+                    tolerance: tolerances,
+                    others: &lazy,
+                },
+            };
+            let walked = fairest(&terms, &mut fit.springs, &mut fit.shape.x, self.control)?;
+            result = Some(walked);
+            if fit.holds.tighten(&fit.shape.space, &fit.shape.x) <= HELD {
+                break;
+            }
+        }
+        Ok(result.expect("there is at least one round"))
+    }
+
+    /// Springs so weak that they choose only among equally fair curves.
+    fn lazy(&self, fit: &Free<D>, tolerances: &[f64]) -> Gram<D> {
+        /// Their energy where every point is at its limit, as a share of the
+        /// curve's.
+        const LAZY: f64 = 1e-4;
+        let energy = fit.shape.energy.cost(&fit.shape.space, &fit.shape.x)[0];
+        let least = super::within::no_energy(&fit.shape.space);
+        let mut springs = fit.springs.clone();
+        let bounded = tolerances.iter().filter(|t| t.is_finite() && **t > 0.0).count();
+        let share = LAZY * energy.max(least) / bounded.max(1) as f64;
+        for (w, t) in springs.weights.iter_mut().zip(tolerances) {
+            *w = if t.is_finite() && *t > 0.0 { share / (t * t) } else { 0.0 };
+        }
+        springs.gram(&fit.shape.space, &fit.shape.x)
+    }
+
+    /// What other tolerances would give, each from the last.
+    fn trade_off(&self, mut fit: Free<D>, solved: &mut Solved<D>) -> Result<(), FitError> {
+        /// Factors of the tolerances, from the feasible side.
+        const FACTORS: [f64; 4] = [4.0, 2.0, 0.5, 0.25];
+        /// Points beyond which the table would cost more than the fit.
+        const MOST_POINTS: usize = 20_000;
+        let row = |factor: f64, used: f64, shape: &Shape<D>, springs: &Springs<D>| {
+            let energy = shape.energy.cost(&shape.space, &shape.x)[0];
+            let residuals = springs.residuals(&shape.space, &shape.x);
+            let most = residuals.iter().map(Vector::norm).fold(0.0, f64::max);
+            [factor, used, energy, most]
+        };
+        let own = row(1.0, solved.used, &solved.shape, &solved.springs);
+        solved.trade_off.push(own);
+        if self.task.points.len() <= MOST_POINTS {
+            for factor in FACTORS {
+                let tolerances: Vec<f64> = solved.tolerances.iter().map(|t| t * factor).collect();
+                let used = self.approach(&mut fit, &tolerances)?;
+                if used >= 1.0 {
+                    solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
+                    continue;
+                }
+                let kept = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
+                self.walk(&mut fit, &tolerances)?;
+                let used = worst(&fit.shape, &fit.springs, &tolerances);
+                solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
+                (fit.shape, fit.springs, fit.holds) = kept;
+            }
+        }
+        solved.trade_off.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        Ok(())
+    }
+}

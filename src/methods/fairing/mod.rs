@@ -1,0 +1,2 @@
+//! fairing
+pub mod curve;
