@@ -45,6 +45,9 @@ pub(super) fn relief(curvature: f64, gentle: f64) -> f64 {
     (1.0 + sharpness * sharpness).powf(-1.5)
 }
 
+/// Spans to each side over which the curvature is averaged for [`relief`].
+const REACH: usize = 2;
+
 /// A node of the quadrature with the functions that act there.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
@@ -170,8 +173,20 @@ impl Energy {
         if self.quadratic.is_some() {
             return;
         }
-        for (node, weight) in self.nodes.iter().zip(&mut self.relief) {
-            *weight = relief(curvature(&derivatives(space, node, x)), gentle);
+        let bent: Vec<[f64; 2]> = self
+            .nodes
+            .iter()
+            .map(|node| {
+                let d = derivatives(space, node, x);
+                let length = node.weight * d[0].norm();
+                [length, length * curvature(&d)]
+            })
+            .collect();
+        let reach = REACH * space.degree();
+        for (k, weight) in self.relief.iter_mut().enumerate() {
+            let near = &bent[k.saturating_sub(reach)..(k + reach + 1).min(bent.len())];
+            let [length, turn] = near.iter().fold([0.0; 2], |s, n| [s[0] + n[0], s[1] + n[1]]);
+            *weight = relief(turn / length.max(f64::MIN_POSITIVE), gentle);
         }
     }
 
@@ -339,21 +354,6 @@ impl<const D: usize> Block<D> {
             }
         }
     }
-}
-
-/// The scalar matrix of the paper's energy ∫ α b′b′ + β b″b″ + γ b‴b‴ du: the
-/// same for every coordinate.
-pub(super) fn quadratic_matrix(space: &Space, weights: &Quadratic) -> EnvelopeMatrix {
-    let mut matrix = space.matrix(1);
-    for node in nodes(space) {
-        for (k, weight) in weights.iter().enumerate() {
-            if *weight > 0.0 {
-                let row = node.basis.derivative(k + 1);
-                add_outer(space, &mut matrix, node.basis.first, row, node.weight * weight);
-            }
-        }
-    }
-    matrix
 }
 
 /// Adds `scale · rowᵀ row` for functions from `first` on.

@@ -53,7 +53,9 @@ pub(super) fn first_shape<const D: usize>(
     let choice = model.choose(None);
     let (x, ..) = model.solve(choice.stiffness)?;
     let energy = Energy::new(&space, quadratic);
-    Some(Shape { space, x, energy })
+    let mut shape = Shape { space, x, energy };
+    shape.relieve();
+    Some(shape)
 }
 
 /// Fits `shape` to its springs; the stiffness comes from the points.
@@ -73,7 +75,6 @@ pub(super) fn settle<const D: usize>(
         control.check()?;
         springs.refresh(&shape.space, &shape.x, reach);
         let gram = springs.gram(&shape.space, &shape.x);
-        shape.relieve();
         let near = choice.map(|c| c.likeliest);
         let offsets = Offsets::about(&shape.space, &shape.energy, &gram, &shape.x);
         let next = if gram.count > 0 {
@@ -81,10 +82,10 @@ pub(super) fn settle<const D: usize>(
         } else {
             offsets.soft()
         };
-        holds.weigh(next.stiffness * offsets.mean_stiffness());
+        holds.weigh(&shape.space, next.stiffness, &offsets.stiffnesses());
         holds.follow(springs.held_feet());
         shape.balance(&gram, holds, next.stiffness);
-        let unheld = holds.tighten(&shape.space, &shape.x);
+            let unheld = holds.tighten(&shape.space, &shape.x);
         let change = |c: Choice| (c.stiffness.ln() - next.stiffness.ln()).abs();
         let steady = choice.is_some_and(|c| change(c) < SETTLED);
         choice = Some(next);
@@ -96,7 +97,9 @@ pub(super) fn settle<const D: usize>(
 }
 
 impl<const D: usize> Shape<D> {
-    /// Weighs the energy by the present curvature.
+    /// Weighs the energy by the curvature of the present shape. Once, of the
+    /// first shape: a weight that followed the curve would reward it for
+    /// gathering its curvature in a cusp, which then weighs nothing.
     pub(super) fn relieve(&mut self) {
         let [a, b] = self.space.domain();
         self.energy.relieve(&self.space, &self.x, GENTLE / (b - a));

@@ -8,8 +8,7 @@ use super::space::{Space, Vector};
 use crate::geometry::bspline::BasisJet;
 use nalgebra::SMatrix;
 
-/// Weight of a hold against the mean stiffness of the curve at one
-/// coefficient: each step of the multipliers takes off what is left by about
+/// Weight of a hold against the stiffness of the curve there: each step of the multipliers takes off what is left by about
 /// this factor or more.
 const HOLD: f64 = 1e3;
 /// Weight of straightness against the same: no multiplier, but enough that
@@ -35,15 +34,15 @@ struct Hold<const D: usize> {
     follows: bool,
     condition: Condition<D>,
     shift: Vector<D>,
+    weight: f64,
 }
 
 /// All conditions of a curve.
 #[derive(Debug, Clone)]
 pub(super) struct Holds<const D: usize> {
     holds: Vec<Hold<D>>,
-    weight: f64,
-    /// Nodes of the straight stretches.
-    straight: Vec<Node>,
+    /// Nodes of the straight stretches with their weights.
+    straight: Vec<(Node, f64)>,
 }
 
 /// A residual of up to D components with derivatives by r′ and r″.
@@ -59,7 +58,6 @@ impl<const D: usize> Holds<D> {
     pub(super) fn none() -> Self {
         Holds {
             holds: Vec::new(),
-            weight: 1.0,
             straight: Vec::new(),
         }
     }
@@ -72,17 +70,26 @@ impl<const D: usize> Holds<D> {
             follows,
             condition,
             shift: Vector::zeros(),
+            weight: 1.0,
         });
     }
 
-    /// Weighs the conditions for a curve whose coefficients are this stiff in
-    /// the mean; the multipliers stay what they are.
-    pub(super) fn weigh(&mut self, stiffness: f64) {
-        let weight = HOLD * stiffness;
+    /// Weighs the conditions against the stiffness of the coefficients that
+    /// they act on; the multipliers stay what they are.
+    pub(super) fn weigh(&mut self, space: &Space, stiffness: f64, of_each: &[f64]) {
+        let local = |u: f64| {
+            let basis = space.basis::<1>(u);
+            let of = |k: usize| of_each[space.unknown(basis.first + k)];
+            (0..basis.count).map(of).fold(f64::MIN_POSITIVE, f64::max)
+        };
         for hold in &mut self.holds {
-            hold.shift *= self.weight / weight;
+            let weight = HOLD * stiffness * local(hold.u);
+            hold.shift *= hold.weight / weight;
+            hold.weight = weight;
         }
-        self.weight = weight;
+        for (node, weight) in &mut self.straight {
+            *weight = STRAIGHT * stiffness * local(node.u);
+        }
     }
 
     /// Moves the conditions that belong to points to their new feet.
@@ -93,11 +100,17 @@ impl<const D: usize> Holds<D> {
         }
     }
 
+    /// Forgets the straight stretches, whose nodes belong to a space.
+    pub(super) fn unstraighten(&mut self) {
+        self.straight.clear();
+    }
+
     /// Asks for a straight line between two parameters, given the nodes of
     /// the whole curve.
     pub(super) fn straighten(&mut self, nodes: &[Node], [from, to]: [f64; 2]) {
         let inside = |n: &&Node| n.u > from && n.u < to;
-        self.straight.extend(nodes.iter().filter(inside).cloned());
+        let found = nodes.iter().filter(inside).map(|n| (n.clone(), 1.0));
+        self.straight.extend(found);
     }
 
     /// Weighted squares.
@@ -105,11 +118,11 @@ impl<const D: usize> Holds<D> {
         let mut sum = 0.0;
         for hold in &self.holds {
             let r = hold.residual(space, x).1;
-            sum += self.weight * (r.value + hold.shift).norm_squared();
+            sum += hold.weight * (r.value + hold.shift).norm_squared();
         }
-        for node in &self.straight {
+        for (node, weight) in &self.straight {
             let r = bend(&pair(space, &node.basis, x));
-            sum += STRAIGHT / HOLD * self.weight * node.weight * r.value.norm_squared();
+            sum += weight * node.weight * r.value.norm_squared();
         }
         sum
     }
@@ -120,16 +133,22 @@ impl<const D: usize> Holds<D> {
         for hold in &self.holds {
             let (basis, r) = hold.residual(space, x);
             block.clear(basis.first);
-            push(&mut block, &basis, &r, &hold.shift, self.weight);
+            push(&mut block, &basis, &r, &hold.shift, hold.weight);
             block.scatter(space, model);
         }
-        for node in &self.straight {
+        for (node, weight) in &self.straight {
             let r = bend(&pair(space, &node.basis, x));
             block.clear(node.basis.first);
-            let strength = STRAIGHT / HOLD * self.weight * node.weight;
+            let strength = weight * node.weight;
             push(&mut block, &node.basis, &r, &Vector::zeros(), strength);
             block.scatter(space, model);
         }
+    }
+
+    /// The largest residual.
+    pub(super) fn residual(&self, space: &Space, x: &[Vector<D>]) -> f64 {
+        let each = self.holds.iter().map(|h| h.residual(space, x).1.value.norm());
+        each.fold(0.0, f64::max)
     }
 
     /// The step of the multipliers. Returns the largest residual.

@@ -7,7 +7,6 @@ mod holds;
 mod input;
 mod net;
 pub mod outcome;
-mod reach;
 mod relax;
 mod report;
 pub mod request;

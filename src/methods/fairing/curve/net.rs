@@ -3,9 +3,13 @@
 //! A few dozen points get a span each, so that the spline can pass through
 //! them all. More points share spans; whether the spline is rich enough is
 //! asked of the points themselves: in cells of a quarter span the mean
-//! residual must not be more than noise makes it. Where it is, spans double.
+//! residual must not be more than noise (by the median) makes it. Where it is, spans double.
+//! Where a tolerance asks for more, only the spans at the points that need it
+//! are halved ([`split`]).
 
+use super::energy::{add_outer, nodes};
 use super::space::{Space, Vector};
+use super::slips::spread;
 use super::springs::Springs;
 
 /// Spans up to which every interval between points gets one.
@@ -24,8 +28,9 @@ pub(super) fn misses_shape<const D: usize>(
     space: &Space,
     springs: &Springs<D>,
     residuals: &[Vector<D>],
-    noise: f64,
 ) -> bool {
+    let sizes: Vec<f64> = residuals.iter().map(Vector::norm).collect();
+    let noise = spread::<D>(&sizes, &springs.weights);
     let [a, b] = space.domain();
     let cells = space.unknowns() * CELLS;
     let mut sums = vec![(Vector::<D>::zeros(), 0.0); cells];
@@ -45,4 +50,63 @@ pub(super) fn misses_shape<const D: usize>(
         }
     }
     count > 0.0 && chi > count + DEVIATES * (2.0 * count).sqrt()
+}
+
+/// A space with the spans at the given parameters, and their neighbours,
+/// halved; `None` if that would make too many or too short ones.
+pub(super) fn split(space: &Space, at: &[f64]) -> Option<Space> {
+    /// Shortest span as a share of the domain.
+    const SHORTEST: f64 = 1e-5;
+    let spans = space.spans();
+    let mut marked = vec![false; spans.len()];
+    for u in at {
+        let k = spans.partition_point(|s| s[1] <= *u).min(spans.len() - 1);
+        for m in &mut marked[k.saturating_sub(1)..(k + 2).min(spans.len())] {
+            *m = true;
+        }
+    }
+    let [a, b] = space.domain();
+    let mut inner = space.inner_knots();
+    let before = inner.len();
+    for (s, _) in spans.iter().zip(&marked).filter(|(_, m)| **m) {
+        if s[1] - s[0] > SHORTEST * (b - a) {
+            inner.push(0.5 * (s[0] + s[1]));
+        }
+    }
+    if inner.len() == before || inner.len() > MOST_SPANS {
+        return None;
+    }
+    inner.sort_by(f64::total_cmp);
+    let made = if space.is_closed() {
+        Space::closed(space.degree(), [a, b], &inner)
+    } else {
+        Space::open(space.degree(), [a, b], &inner)
+    };
+    made.ok()
+}
+
+/// The coefficients in a richer space of the curve with coefficients `x`: by
+/// least squares at quadrature nodes, exact because the curve lies in it.
+pub(super) fn transfer<const D: usize>(
+    from: &Space,
+    x: &[Vector<D>],
+    to: &Space,
+) -> Option<Vec<Vector<D>>> {
+    let mut matrix = to.matrix(1);
+    let mut sums = vec![Vector::<D>::zeros(); to.unknowns()];
+    for node in nodes(to) {
+        let row = node.basis.values();
+        add_outer(to, &mut matrix, node.basis.first, row, node.weight);
+        let point = from.point(x, node.u);
+        for (k, b) in row.iter().enumerate() {
+            sums[to.unknown(node.basis.first + k)] += point * (node.weight * b);
+        }
+    }
+    let factor = matrix.factor().ok()?;
+    for c in 0..D {
+        let mut column: Vec<f64> = sums.iter().map(|s| s[c]).collect();
+        factor.solve_in_place(&mut column);
+        sums.iter_mut().zip(&column).for_each(|(s, v)| s[c] = *v);
+    }
+    Some(sums)
 }

@@ -9,6 +9,9 @@
 //! (Qᵢ/ν), its chance multiplied by the number of points (Bonferroni); if
 //! that is small it is set aside and the rest is looked at again.
 //!
+//! Slips stand alone. A run of neighbours that are all off is a bend that the
+//! curve does not follow, and is not called slips.
+//!
 //! Many points hide nothing: there the spread of the residuals is estimated by
 //! its median, which a few per cent of slips do not move, points far outside
 //! are set aside, and the rest is fitted anew until nothing changes.
@@ -57,14 +60,22 @@ pub(super) fn suspects<const D: usize>(
     control: &dyn Control,
 ) -> Result<Vec<Suspect<D>>, Stop> {
     let (mut shape, mut springs) = (shape.clone(), springs.clone());
-    let count = springs.weights.iter().filter(|w| **w > 0.0).count();
+    let given = springs.weights.clone();
+    let count = given.iter().filter(|w| **w > 0.0).count();
     let set_aside = if count <= TRY_EACH {
         one_by_one(&shape, &mut springs, choice, control)?
     } else {
         by_medians(&mut shape, &mut springs, control)?
     };
+    let set_aside = alone(set_aside, &springs);
     if set_aside.is_empty() {
         return Ok(Vec::new());
+    }
+    for (w, given) in springs.weights.iter_mut().zip(&given) {
+        *w = *given;
+    }
+    for (i, _) in &set_aside {
+        springs.weights[*i] = 0.0;
     }
     let rest = settle(&mut shape, &mut springs, &mut Holds::none(), control)?;
     let noise = rest.noise.max(f64::MIN_POSITIVE);
@@ -84,6 +95,23 @@ pub(super) fn suspects<const D: usize>(
         .collect();
     found.sort_by(|a, b| a.chance.total_cmp(&b.chance).then(a.index.cmp(&b.index)));
     Ok(found)
+}
+
+/// Of points set aside, those that are not part of a run along the curve.
+fn alone<const D: usize>(found: Vec<(usize, f64)>, springs: &Springs<D>) -> Vec<(usize, f64)> {
+    /// Points in a row that make a run.
+    const RUN: usize = 3;
+    let mut along: Vec<usize> = (0..springs.feet.len()).collect();
+    along.sort_by(|a, b| springs.feet[*a].total_cmp(&springs.feet[*b]).then(a.cmp(b)));
+    let mut off = vec![false; along.len()];
+    found.iter().for_each(|(i, _)| off[*i] = true);
+    let mut kept = vec![false; along.len()];
+    for run in along.chunk_by(|a, b| off[*a] == off[*b]) {
+        if off[run[0]] && run.len() < RUN {
+            run.iter().for_each(|i| kept[*i] = true);
+        }
+    }
+    found.into_iter().filter(|(i, _)| kept[*i]).collect()
 }
 
 /// A candidate for deletion: its score without it, F, freedom of the rest.
@@ -164,7 +192,8 @@ fn deletions<const D: usize>(
     let space = &shape.space;
     let deletion = |i: usize| {
         let w = springs.weights[i];
-        if w <= 0.0 || freedom < 1.0 {
+        // What would be at an end or a knuckle without its point nobody knows.
+        if w <= 0.0 || freedom < 1.0 || springs.pinned[i] {
             return None;
         }
         let basis = space.basis::<2>(springs.feet[i]);
@@ -206,7 +235,7 @@ fn by_medians<const D: usize>(
         let noise = spread::<D>(&sizes, &given);
         let chance = |d: f64| count * tail((d / noise).powi(2) / (D - 1) as f64, D - 1, count);
         let next: Vec<(usize, f64)> = (0..sizes.len())
-            .filter(|i| given[*i] > 0.0)
+            .filter(|i| given[*i] > 0.0 && !springs.pinned[*i])
             .map(|i| (i, chance(sizes[i])))
             .filter(|(_, chance)| *chance < SURE)
             .collect();
@@ -227,7 +256,7 @@ fn by_medians<const D: usize>(
 
 /// σ of one coordinate from the median of the distances: |N(0, 1)| has the
 /// median 0.6745, the length of a plane normal vector √(2 ln 2).
-fn spread<const D: usize>(sizes: &[f64], weights: &[f64]) -> f64 {
+pub(super) fn spread<const D: usize>(sizes: &[f64], weights: &[f64]) -> f64 {
     let mut used: Vec<f64> = sizes
         .iter()
         .zip(weights)

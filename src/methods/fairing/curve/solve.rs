@@ -1,18 +1,17 @@
 //! From a task to a fair curve: start, free fit, net, slips, tolerances.
 
-use super::energy::Quadratic;
+use super::energy::{Energy, Quadratic};
 use super::free::{HELD, Shape, first_shape, settle};
 use super::holds::{Condition, Holds};
 use super::input::{Task, degree_of};
-use super::net::{FIRST_SPANS, MOST_SPANS, misses_shape};
-use super::reach::{reach, worst};
+use super::net::{FIRST_SPANS, MOST_SPANS, misses_shape, split, transfer};
 use super::request::{Options, Request};
 use super::slips::{Suspect, suspects};
 use super::space::Vector;
 use super::springs::{Gram, Springs};
 use super::start::{Breaks, space_for};
 use super::stiffness::{Choice, Offsets};
-use super::within::{Bounds, Terms, fairest};
+use super::within::{Bounds, Terms, enter, fairest};
 use crate::methods::FitError;
 use crate::solver::{Control, Stop};
 
@@ -118,7 +117,48 @@ pub(super) struct Free<const D: usize> {
     pub(super) holds: Holds<D>,
     pub(super) choice: Choice,
     pub(super) net: &'static str,
-    pub(super) spans: usize,
+}
+
+/// The bounds of a walk: held points have a hold instead.
+fn limits(tolerances: &[f64]) -> Vec<f64> {
+    let limit = |t: &f64| if *t > 0.0 { *t } else { f64::INFINITY };
+    tolerances.iter().map(limit).collect()
+}
+
+/// The largest share of a tolerance that a point uses.
+pub(super) fn worst<const D: usize>(
+    shape: &Shape<D>,
+    springs: &Springs<D>,
+    tolerances: &[f64],
+) -> f64 {
+    springs
+        .residuals(&shape.space, &shape.x)
+        .iter()
+        .zip(tolerances)
+        .filter(|(_, t)| t.is_finite() && **t > 0.0)
+        .map(|(e, t)| e.norm() / t)
+        .fold(0.0, f64::max)
+}
+
+/// ∫ |r‴|² du.
+const PLAIN: Quadratic = [0.0, 0.0, 1.0];
+/// Share of the tolerances from which the walk to the fairest can begin.
+const NEAR_ENOUGH: f64 = 0.97;
+/// Share beyond which a point asks for a richer spline.
+const BEYOND: f64 = 0.98;
+/// Prices of slack, in energies of the first curve: the dearer, the rougher
+/// the curve may become to enter the bounds.
+const PRICES: [f64; 3] = [1e1, 1e3, 1e6];
+
+impl<const D: usize> Free<D> {
+    fn terms<'a>(&'a self, bounds: Bounds<'a, D>) -> Terms<'a, D> {
+        Terms {
+            space: &self.shape.space,
+            energy: &self.shape.energy,
+            holds: &self.holds,
+            bounds,
+        }
+    }
 }
 
 impl<const D: usize> Bench<'_, D> {
@@ -127,7 +167,9 @@ impl<const D: usize> Bench<'_, D> {
         let most = self.most_spans();
         let (mut spans, mut net) = match self.asked_spans() {
             Some(n) => (n, "asked"),
-            None if most <= FIRST_SPANS => (most, "one a point"),
+            None if most <= FIRST_SPANS || 4 * self.held().len() > FIRST_SPANS => {
+                (most, "one a point")
+            }
             None => (FIRST_SPANS, "enough for the shape"),
         };
         loop {
@@ -135,7 +177,7 @@ impl<const D: usize> Bench<'_, D> {
             let fit = self.fit_with(spans, net)?;
             let residuals = fit.springs.residuals(&fit.shape.space, &fit.shape.x);
             let poor = fit.choice.noise > 0.0
-                && misses_shape(&fit.shape.space, &fit.springs, &residuals, fit.choice.noise);
+                && misses_shape(&fit.shape.space, &fit.springs, &residuals);
             if net == "asked" || spans >= most || !poor {
                 return Ok(fit);
             }
@@ -174,33 +216,66 @@ impl<const D: usize> Bench<'_, D> {
     }
 
     /// The free fit in a space of `spans` spans.
-    pub(super) fn fit_with(&self, spans: usize, net: &'static str) -> Result<Free<D>, FitError> {
-        let breaks = self.breaks();
+    fn fit_with(&self, spans: usize, net: &'static str) -> Result<Free<D>, FitError> {
+        /// What may be left of the holds before the energy is held unfit.
+        const FAR: f64 = 1e-7;
+        let (fit, unheld) = self.fit_by(spans, net, self.quadratic)?;
+        if self.quadratic.is_some() || unheld <= FAR {
+            return Ok(fit);
+        }
+        // Held points so rough that ∫ κ′² ds finds no way to them: the
+        // quadratic energy always does.
+        Ok(self.fit_by(spans, net, Some(PLAIN))?.0)
+    }
+
+    fn fit_by(
+        &self,
+        spans: usize,
+        net: &'static str,
+        quadratic: Option<Quadratic>,
+    ) -> Result<(Free<D>, f64), FitError> {
+        /// Rounds of the multipliers beyond those of the fit.
+        const MORE_ROUNDS: usize = 30;
         let t = self.traced;
         let data = (&t.parameters[..], t.domain, t.closed);
-        let space = space_for(self.degree(), data, spans, &breaks)
+        let space = space_for(self.degree(), data, spans, &self.breaks())
             .map_err(|e| FitError::Numerical(e.to_string()))?;
         let mut springs = self.springs();
         let broken = || FitError::Numerical("the points do not determine a curve".into());
-        let mut shape = first_shape(space, &springs, self.quadratic).ok_or_else(broken)?;
+        let mut shape = first_shape(space, &springs, quadratic).ok_or_else(broken)?;
         let held = self.held();
         let mut holds = self.holds(&shape, &held);
         for i in &held {
             springs.weights[*i] = 0.0;
         }
+        if 2 * held.len() >= springs.points.len() {
+            // Interpolation: parameters stay, so that knots and points keep
+            // interlacing (Schoenberg–Whitney).
+            springs.pin(held.iter().copied());
+        }
         springs.held = held;
         let choice = settle(&mut shape, &mut springs, &mut holds, self.control)?;
+        for _ in 0..MORE_ROUNDS {
+            if holds.residual(&shape.space, &shape.x) <= HELD {
+                break;
+            }
+            self.control.check()?;
+            let gram = springs.gram(&shape.space, &shape.x);
+            shape.balance(&gram, &holds, choice.stiffness);
+            holds.tighten(&shape.space, &shape.x);
+        }
         if !shape.x.iter().all(|v| v.iter().all(|c| c.is_finite())) {
             return Err(broken());
         }
-        Ok(Free {
+        let unheld = holds.residual(&shape.space, &shape.x);
+        let fit = Free {
             shape,
             springs,
             holds,
             choice,
             net,
-            spans,
-        })
+        };
+        Ok((fit, unheld))
     }
 
     fn springs(&self) -> Springs<D> {
@@ -277,18 +352,17 @@ impl<const D: usize> Bench<'_, D> {
 
     /// The fairest curve within the tolerances, in a richer space if need be.
     fn within(&self, mut fit: Free<D>, solved: &mut Solved<D>) -> Result<(), FitError> {
-        let most = self.most_spans();
-        let weights = fit.springs.weights.clone();
-        let mut used = self.approach(&mut fit, &solved.tolerances)?;
-        while used > 1.0 && fit.spans < most && fit.net != "asked" {
-            let mut richer = self.fit_with((2 * fit.spans).min(most), "the tolerance")?;
-            richer.springs.weights.clone_from(&weights);
-            let next = self.approach(&mut richer, &solved.tolerances)?;
-            if next < used {
-                (fit, used) = (richer, next);
-            } else {
-                fit.spans = richer.spans;
+        /// Times that spans may be halved where the bounds ask for it.
+        const MOST_SPLITS: usize = 10;
+        let limits = limits(&solved.tolerances);
+        let mut used = self.approach(&mut fit, &limits)?;
+        for _ in 0..MOST_SPLITS {
+            // Beyond a span a point no spline helps, only another tolerance.
+            let full = fit.shape.space.unknowns() > self.most_spans() + self.degree();
+            if used < 1.0 || full || fit.net == "asked" || !self.enrich(&mut fit, &limits) {
+                break;
             }
+            used = self.approach(&mut fit, &limits)?;
         }
         solved.net = fit.net;
         if used >= 1.0 {
@@ -298,21 +372,69 @@ impl<const D: usize> Bench<'_, D> {
             return Ok(());
         }
         let inner = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
-        let best = self.walk(&mut fit, &solved.tolerances)?;
+        let best = self.walk(&mut fit, &limits)?;
         solved.duals = best.duals;
         solved.gap = Some(best.gap);
         solved.steps = best.steps;
-        solved.used = worst(&fit.shape, &fit.springs, &solved.tolerances);
+        solved.used = worst(&fit.shape, &fit.springs, &limits);
         solved.shape = fit.shape.clone();
         solved.springs = fit.springs.clone();
         (fit.shape, fit.springs, fit.holds) = inner;
         self.trade_off(fit, solved)
     }
 
+    /// Halves the spans at points that are beyond their tolerance.
+    fn enrich(&self, fit: &mut Free<D>, tolerances: &[f64]) -> bool {
+        let shape = &fit.shape;
+        let residuals = fit.springs.residuals(&shape.space, &shape.x);
+        let beyond = residuals.iter().zip(tolerances).zip(&fit.springs.feet);
+        let at: Vec<f64> = beyond
+            .filter(|((e, t), _)| t.is_finite() && e.norm() > BEYOND * **t)
+            .map(|(_, u)| *u)
+            .collect();
+        let Some(space) = split(&shape.space, &at) else {
+            return false;
+        };
+        let Some(x) = transfer(&shape.space, &shape.x, &space) else {
+            return false;
+        };
+        let energy = Energy::new(&space, fit.shape.energy.quadratic);
+        fit.shape = Shape { space, x, energy };
+        fit.shape.relieve();
+        fit.net = "the tolerance";
+        fit.holds.unstraighten();
+        for [a, b] in &self.task.straight {
+            let u = &self.traced.parameters;
+            fit.holds.straighten(&fit.shape.energy.nodes, [u[*a], u[*b]]);
+        }
+        true
+    }
+
+    /// Brings every point within its tolerance, if the spline can; returns
+    /// the largest share of a tolerance in use.
     fn approach(&self, fit: &mut Free<D>, tolerances: &[f64]) -> Result<f64, Stop> {
-        let stiffness = fit.choice.stiffness;
-        let given = (tolerances, stiffness);
-        reach(&mut fit.shape, &mut fit.springs, given, &mut fit.holds, self.control)
+        let used = worst(&fit.shape, &fit.springs, tolerances);
+        if used <= NEAR_ENOUGH {
+            return Ok(used);
+        }
+        let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
+        let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
+        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
+        let lazy = self.lazy(fit, tolerances);
+        for price in PRICES {
+            let bounds = Bounds {
+                tolerance: tolerances,
+                others: &lazy,
+            };
+            let terms = fit.terms(bounds);
+            let (mut x, mut springs) = (fit.shape.x.clone(), fit.springs.clone());
+            let entered = enter(&terms, &mut springs, &mut x, price, self.control)?;
+            (fit.shape.x, fit.springs) = (x, springs);
+            if entered.slack < 0.0 {
+                break;
+            }
+        }
+        Ok(worst(&fit.shape, &fit.springs, tolerances))
     }
 
     /// The interior point walk, with the multipliers of the holds around it.
@@ -321,21 +443,18 @@ impl<const D: usize> Bench<'_, D> {
         const ROUNDS: usize = 6;
         let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
         let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
-        fit.holds.weigh(offsets.mean_stiffness());
+        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
         let mut result = None;
         for _ in 0..ROUNDS {
             fit.holds.follow(fit.springs.held_feet());
-            let terms = Terms {
-                space: &fit.shape.space,
-                energy: &fit.shape.energy,
-                holds: &fit.holds,
-                bounds: Bounds {
-                    tolerance: tolerances,
-                    others: &lazy,
-                },
+            let bounds = Bounds {
+                tolerance: tolerances,
+                others: &lazy,
             };
-            let walked = fairest(&terms, &mut fit.springs, &mut fit.shape.x, self.control)?;
+            let (mut x, mut springs) = (fit.shape.x.clone(), fit.springs.clone());
+            let walked = fairest(&fit.terms(bounds), &mut springs, &mut x, self.control)?;
+            (fit.shape.x, fit.springs) = (x, springs);
             result = Some(walked);
             if fit.holds.tighten(&fit.shape.space, &fit.shape.x) <= HELD {
                 break;
@@ -348,7 +467,7 @@ impl<const D: usize> Bench<'_, D> {
     fn lazy(&self, fit: &Free<D>, tolerances: &[f64]) -> Gram<D> {
         /// Their energy where every point is at its limit, as a share of the
         /// curve's.
-        const LAZY: f64 = 1e-4;
+        const LAZY: f64 = 1e-3;
         let energy = fit.shape.energy.cost(&fit.shape.space, &fit.shape.x)[0];
         let least = super::within::no_energy(&fit.shape.space);
         let mut springs = fit.springs.clone();
@@ -376,7 +495,8 @@ impl<const D: usize> Bench<'_, D> {
         solved.trade_off.push(own);
         if self.task.points.len() <= MOST_POINTS {
             for factor in FACTORS {
-                let tolerances: Vec<f64> = solved.tolerances.iter().map(|t| t * factor).collect();
+                let own = limits(&solved.tolerances);
+                let tolerances: Vec<f64> = own.iter().map(|t| t * factor).collect();
                 let used = self.approach(&mut fit, &tolerances)?;
                 if used >= 1.0 {
                     solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));

@@ -100,6 +100,18 @@ impl Space {
         self.unknowns
     }
 
+    /// Whether the splines are closed.
+    pub(super) fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// Inner knots of the domain, multiplicities written out.
+    pub(super) fn inner_knots(&self) -> Vec<f64> {
+        let [a, b] = self.domain;
+        let inside = |t: &&f64| **t > a && **t < b;
+        self.knots.iter().filter(inside).copied().collect()
+    }
+
     /// First and last parameter; the same place if closed.
     pub(super) fn domain(&self) -> [f64; 2] {
         self.domain

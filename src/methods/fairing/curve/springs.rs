@@ -255,9 +255,16 @@ fn foot<const D: usize>(
 ) -> f64 {
     let [a, b] = space.domain();
     let mut u = start;
+    let mut best = (f64::INFINITY, start);
     for _ in 0..NEWTON_STEPS {
         let jet = space.jet(x, u);
         let away = (p - jet.point).component_mul(metric);
+        let distance = away.norm_squared();
+        if distance > best.0 {
+            // Newton overshot: the foot before is the better one.
+            break;
+        }
+        best = (distance, u);
         let slope = away.dot(&jet.d1);
         let speed = jet.d1.component_mul(metric).norm_squared();
         // Newton where the distance is convex, Gauss–Newton beyond the centre
@@ -265,7 +272,7 @@ fn foot<const D: usize>(
         let bend = speed - away.dot(&jet.d2);
         let curve = if bend > 0.1 * speed { bend } else { speed };
         if curve <= 0.0 {
-            return u;
+            break;
         }
         let step = (slope / curve).clamp(-reach, reach);
         let next = space.wrap(u + step);
@@ -275,7 +282,7 @@ fn foot<const D: usize>(
             break;
         }
     }
-    u
+    best.1
 }
 
 impl<const D: usize> Gram<D> {

@@ -26,10 +26,12 @@
 //! a few dozen points is at interpolation too often. Every λ costs one banded
 //! factorisation of order n, whatever the number of points.
 
-use super::energy::{Energy, Quadratic, add_outer, curvature, derivatives, quadratic_matrix};
-use super::energy::variation_value;
+use super::energy::{
+    Energy, Node, Quadratic, add_outer, curvature, derivatives, nodes, variation_value,
+};
 use super::space::{Space, Vector};
 use super::springs::{Gram, across};
+use crate::geometry::bspline::MAX_DEGREE;
 use crate::numerics::{EnvelopeFactor, EnvelopeMatrix};
 
 /// Directions per offset that the energy does not feel.
@@ -58,17 +60,29 @@ const GOLDEN: f64 = 0.381_966_011_250_105_1;
 pub(super) struct Offsets<'a, const D: usize> {
     /// G.
     gram: &'a EnvelopeMatrix,
+    space: &'a Space,
     /// H, of one offset.
     energy: EnvelopeMatrix,
+    /// The same as rows, for sums of squares that rounding keeps positive.
+    rows: Vec<Row<D>>,
     /// Pull of the springs across the curve.
     pull: Vec<Vector<D>>,
     /// Half the slope of the energy at h = 0.
     slope: Vec<Vector<D>>,
-    /// Q at h = 0: springs and energy.
-    at_rest: [f64; 2],
+    /// Springs' part of Q at h = 0.
+    at_rest: f64,
     /// Number of scalar observations N and of offsets f.
     observations: f64,
     offsets: f64,
+}
+
+/// One weighted square of the energy: weight · ‖value + row·h‖².
+struct Row<const D: usize> {
+    first: usize,
+    weight: f64,
+    value: Vector<D>,
+    row: [f64; MAX_DEGREE + 1],
+    count: usize,
 }
 
 /// A stiffness and what it means.
@@ -92,51 +106,35 @@ impl<'a, const D: usize> Offsets<'a, D> {
     /// The model about the curve with coefficients `x`, where the springs are
     /// summed.
     pub(super) fn about(
-        space: &Space,
+        space: &'a Space,
         energy: &Energy,
         gram: &'a Gram<D>,
         x: &[Vector<D>],
     ) -> Self {
-        let mut h = space.matrix(1);
-        let mut slope = vec![Vector::zeros(); space.unknowns()];
-        let mut at_rest = 0.0;
+        let mut rows = Vec::new();
         for (node, relief) in energy.nodes.iter().zip(&energy.relief) {
             let d = derivatives(space, node, x);
-            let v2 = d[0].norm_squared();
-            let (v, k) = (v2.sqrt(), curvature(&d));
-            let mut add = |value: Vector<D>, row: &[f64], weight: f64| {
-                add_outer(space, &mut h, node.basis.first, row, weight);
-                for (j, l) in row.iter().enumerate() {
-                    slope[space.unknown(node.basis.first + j)] += value * (weight * l);
-                }
-                at_rest += weight * value.norm_squared();
-            };
+            let first = node.basis.first;
             match &energy.quadratic {
-                // Residual √(ω v du) (κ′ + h‴/v³ + κ² h′/v).
-                None => {
-                    let value = across(&(variation_value(&d) / v.sqrt()), &d[0]);
-                    let (d1, d3) = (node.basis.derivative(1), node.basis.derivative(3));
-                    let row: Vec<f64> = d1
-                        .iter()
-                        .zip(d3)
-                        .map(|(d1, d3)| d3 / (v * v2) + k * k * d1 / v)
-                        .collect();
-                    add(value, &row, node.weight * relief * v);
-                }
+                None => rows.push(variation_row(node, &d, *relief)),
                 Some(weights) => {
                     for (order, weight) in weights.iter().enumerate() {
                         let value = across(&d[order], &d[0]);
-                        add(value, node.basis.derivative(order + 1), node.weight * weight);
+                        let row = node.basis.derivative(order + 1);
+                        rows.push(Row::new(first, node.weight * weight, value, row));
                     }
                 }
             }
         }
+        let (energy, slope) = assemble(space, &rows);
         Offsets {
             gram: &gram.matrix,
-            energy: h,
+            space,
+            energy,
+            rows,
             pull: gram.offsets.clone(),
             slope,
-            at_rest: [gram.offset_square, at_rest],
+            at_rest: gram.offset_square,
             observations: (gram.count * (D - 1)) as f64,
             offsets: (D - 1) as f64,
         }
@@ -144,13 +142,25 @@ impl<'a, const D: usize> Offsets<'a, D> {
 
     /// The model of a curve with the quadratic energy, about nothing: every
     /// coordinate is one offset.
-    pub(super) fn linear(space: &Space, weights: &Quadratic, gram: &'a Gram<D>) -> Self {
+    pub(super) fn linear(space: &'a Space, weights: &Quadratic, gram: &'a Gram<D>) -> Self {
+        let mut rows = Vec::new();
+        for node in nodes(space) {
+            for (order, weight) in weights.iter().enumerate() {
+                let row = node.basis.derivative(order + 1);
+                let weight = node.weight * weight;
+                rows.push(Row::new(node.basis.first, weight, Vector::zeros(), row));
+            }
+        }
+        let (energy, slope) = assemble(space, &rows);
+        let nothing = vec![Vector::zeros(); space.unknowns()];
         Offsets {
             gram: &gram.matrix,
-            energy: quadratic_matrix(space, weights),
-            pull: gram.pull(&vec![Vector::zeros(); space.unknowns()]),
-            slope: vec![Vector::zeros(); space.unknowns()],
-            at_rest: [gram.cost(&vec![Vector::zeros(); space.unknowns()]), 0.0],
+            space,
+            energy,
+            rows,
+            pull: gram.pull(&nothing),
+            slope,
+            at_rest: gram.cost(&nothing),
             observations: (gram.count * D) as f64,
             offsets: D as f64,
         }
@@ -169,22 +179,39 @@ impl<'a, const D: usize> Offsets<'a, D> {
     pub(super) fn solve(&self, stiffness: f64) -> Option<(Vec<Vector<D>>, f64, f64)> {
         let (factor, log) = self.factor(stiffness)?;
         let mut h = vec![Vector::zeros(); self.pull.len()];
-        let mut gain = 0.0;
         for c in 0..D {
-            let force: Vec<f64> = self
-                .pull
-                .iter()
-                .zip(&self.slope)
-                .map(|(p, s)| p[c] - stiffness * s[c])
-                .collect();
-            let mut column = force.clone();
+            let force = self.pull.iter().zip(&self.slope);
+            let mut column: Vec<f64> = force.map(|(p, s)| p[c] - stiffness * s[c]).collect();
             factor.solve_in_place(&mut column);
-            gain += column.iter().zip(&force).map(|(a, b)| a * b).sum::<f64>();
             h.iter_mut().zip(&column).for_each(|(h, v)| h[c] = *v);
         }
-        let q = self.at_rest[0] + stiffness * self.at_rest[1] - gain;
-        let least = ROUNDING * (self.at_rest[0] + stiffness * self.at_rest[1]);
-        Some((h, q.max(least), log))
+        // From the definition, not from the optimality condition: an inexact h
+        // then makes Q a little too large instead of anything.
+        let least = ROUNDING * self.at_rest;
+        let q = self.springs_of(&h).max(least) + stiffness * self.energy_of(&h);
+        Some((h, q, log))
+    }
+
+    /// The energy of offsets.
+    fn energy_of(&self, h: &[Vector<D>]) -> f64 {
+        let square = |r: &Row<D>| {
+            let change = self.space.combine(r.first, &r.row[..r.count], h);
+            r.weight * (r.value + change).norm_squared()
+        };
+        self.rows.iter().map(square).sum()
+    }
+
+    /// Σ w (y − h)².
+    fn springs_of(&self, h: &[Vector<D>]) -> f64 {
+        let mut sum = self.at_rest;
+        for c in 0..D {
+            let column: Vec<f64> = h.iter().map(|v| v[c]).collect();
+            let image = self.gram.multiply(&column);
+            for ((h, image), pull) in column.iter().zip(&image).zip(&self.pull) {
+                sum += h * (image - 2.0 * pull[c]);
+            }
+        }
+        sum
     }
 
     /// The factor of G + λH.
@@ -298,23 +325,12 @@ impl<'a, const D: usize> Offsets<'a, D> {
 
     /// Σ w (y − h)² at ln λ.
     fn springs(&self, t: f64) -> f64 {
-        let Some((h, ..)) = self.solve(t.exp()) else {
-            return f64::INFINITY;
-        };
-        let mut sum = self.at_rest[0];
-        for c in 0..D {
-            let column: Vec<f64> = h.iter().map(|v| v[c]).collect();
-            let image = self.gram.multiply(&column);
-            for ((h, image), pull) in column.iter().zip(&image).zip(&self.pull) {
-                sum += h * (image - 2.0 * pull[c]);
-            }
-        }
-        sum
+        self.solve(t.exp()).map_or(f64::INFINITY, |(h, ..)| self.springs_of(&h))
     }
 
-    /// Mean stiffness of a coefficient at λ = 1.
-    pub(super) fn mean_stiffness(&self) -> f64 {
-        self.energy.diagonal().sum::<f64>() / self.pull.len() as f64
+    /// Stiffness of each coefficient at λ = 1.
+    pub(super) fn stiffnesses(&self) -> Vec<f64> {
+        self.energy.diagonal().collect()
     }
 
     /// ln λ from interpolation to the stiffest wave: H grows as the sixth
@@ -355,6 +371,48 @@ impl<'a, const D: usize> Offsets<'a, D> {
         }
         0.5 * (a + b)
     }
+}
+
+impl<const D: usize> Row<D> {
+    fn new(first: usize, weight: f64, value: Vector<D>, functions: &[f64]) -> Self {
+        let mut row = [0.0; MAX_DEGREE + 1];
+        row[..functions.len()].copy_from_slice(functions);
+        Row {
+            first,
+            weight,
+            value,
+            row,
+            count: functions.len(),
+        }
+    }
+}
+
+/// √(ω v du) (κ′ + h‴/v³ + κ² h′/v) at a node.
+fn variation_row<const D: usize>(node: &Node, d: &[Vector<D>; 3], relief: f64) -> Row<D> {
+    let v2 = d[0].norm_squared();
+    let (v, k) = (v2.sqrt(), curvature(d));
+    let value = across(&(variation_value(d) / v.sqrt()), &d[0]);
+    let (d1, d3) = (node.basis.derivative(1), node.basis.derivative(3));
+    let row: Vec<f64> = d1
+        .iter()
+        .zip(d3)
+        .map(|(d1, d3)| d3 / (v * v2) + k * k * d1 / v)
+        .collect();
+    Row::new(node.basis.first, node.weight * relief * v, value, &row)
+}
+
+/// H and half the slope at h = 0.
+fn assemble<const D: usize>(space: &Space, rows: &[Row<D>]) -> (EnvelopeMatrix, Vec<Vector<D>>) {
+    let mut matrix = space.matrix(1);
+    let mut slope = vec![Vector::zeros(); space.unknowns()];
+    for r in rows {
+        let row = &r.row[..r.count];
+        add_outer(space, &mut matrix, r.first, row, r.weight);
+        for (j, l) in row.iter().enumerate() {
+            slope[space.unknown(r.first + j)] += r.value * (r.weight * l);
+        }
+    }
+    (matrix, slope)
 }
 
 /// The largest t in [from, to] up to which `holds` stays true, by steps and

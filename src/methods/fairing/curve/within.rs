@@ -35,7 +35,11 @@ const GAP: f64 = 1e-4;
 const KEPT: f64 = 0.02;
 /// How fast μ falls after a good step.
 const FALL: f64 = 0.2;
-/// Halvings of a step.
+/// Slack at which a curve has entered its bounds: 5 % of room on every side.
+const ENTERED: f64 = -0.1;
+/// Longest step of a foot, as a share of the domain.
+const REACH: f64 = 0.02;
+/// Shortenings of a step.
 const HALVINGS: usize = 25;
 
 /// What bounds the points.
@@ -56,6 +60,8 @@ pub(super) struct Fairest {
     pub(super) steps: usize,
     /// Duality gap as a share of the energy.
     pub(super) gap: f64,
+    /// Slack that the bounds still need; ≤ 0 if they are kept.
+    pub(super) slack: f64,
 }
 
 /// What a curve is measured by on the way.
@@ -77,7 +83,27 @@ pub(super) fn no_energy(space: &Space) -> f64 {
     1e-6 / (b - a).powi(3)
 }
 
-/// Walks from `x`, strictly within the bounds at the feet of `springs`.
+/// Where a walk is.
+struct Walk<'a, const D: usize> {
+    springs: &'a mut Springs<D>,
+    x: &'a mut Vec<Vector<D>>,
+    /// s: every bound is ‖e‖² ≤ (1 + s) ε².
+    slack: f64,
+    /// Price of slack; 0 where there is none.
+    price: f64,
+    mu: f64,
+    rooms: Vec<f64>,
+    duals: Vec<f64>,
+}
+
+/// A step of coefficients and slack.
+struct Step {
+    d: Vec<f64>,
+    slack: f64,
+}
+
+/// Walks from `x`, strictly within the bounds at the feet of `springs`, to
+/// the fairest.
 ///
 /// # Errors
 /// When the control says stop.
@@ -87,52 +113,221 @@ pub(super) fn fairest<const D: usize>(
     x: &mut Vec<Vector<D>>,
     control: &dyn Control,
 ) -> Result<Fairest, Stop> {
-    let count = terms.bounds.tolerance.iter().filter(|t| t.is_finite()).count() as f64;
-    let [a, b] = terms.space.domain();
-    let reach = 0.02 * (b - a);
-    let first = terms.objective(x);
-    let nothing = no_energy(terms.space);
-    let mut mu = first.max(nothing) / count.max(1.0);
-    let mut rooms = terms.rooms(springs, x);
-    let mut duals: Vec<f64> = rooms.iter().map(|c| mu / c).collect();
-    let mut steps = 0;
-    while steps < MOST_STEPS {
-        control.check()?;
-        let before = terms.objective(x);
-        let direction = solve(&terms.model(springs, x, &duals, &rooms, mu));
-        let taken = direction
-            .and_then(|d| terms.step(springs, x, &d, (mu, before)).map(|share| (d, share)));
-        steps += 1;
-        let Some((d, share)) = taken else {
-            if mu * count <= GAP * before.max(nothing) {
-                break;
-            }
-            mu *= FALL;
-            continue;
-        };
-        let slopes = terms.slopes(springs, x, &d);
-        for ((z, c), slope) in duals.iter_mut().zip(&rooms).zip(&slopes) {
-            *z += share * (mu / c - *z - *z / c * slope);
-        }
-        *x = stepped(x, &d, share);
-        springs.refresh(terms.space, x, reach);
-        rooms = terms.rooms(springs, x);
-        for (z, c) in duals.iter_mut().zip(&rooms) {
-            // Near the central path, so that no dual runs away (eq. 16 of
-            // Wächter & Biegler 2006).
-            *z = z.clamp(mu / c * 1e-3, mu / c * 1e3);
-        }
-        let now = terms.objective(x);
-        let gain = before - now;
-        if mu * count <= GAP * now.max(nothing) && gain <= GAP * now {
-            break;
-        }
-        if share > 0.1 {
-            mu *= if share > 0.7 { FALL } else { FALL.sqrt() };
+    let mut walk = Walk::begin(terms, springs, x, 0.0);
+    walk.run(terms, control)
+}
+
+/// Walks from any `x` into the bounds, as fair as that can be, by a slack s in
+/// ‖eᵢ‖² ≤ (1 + s) εᵢ² that costs `price` times the energy. Ends as soon as
+/// every point is within; a slack above 0 at the end says that the spline
+/// cannot (or not at that price).
+///
+/// # Errors
+/// When the control says stop.
+pub(super) fn enter<const D: usize>(
+    terms: &Terms<D>,
+    springs: &mut Springs<D>,
+    x: &mut Vec<Vector<D>>,
+    price: f64,
+    control: &dyn Control,
+) -> Result<Fairest, Stop> {
+    let energy = terms.objective(x).max(no_energy(terms.space));
+    let mut walk = Walk::begin(terms, springs, x, price * energy);
+    walk.run(terms, control)
+}
+
+impl<'a, const D: usize> Walk<'a, D> {
+    fn begin(
+        terms: &Terms<D>,
+        springs: &'a mut Springs<D>,
+        x: &'a mut Vec<Vector<D>>,
+        price: f64,
+    ) -> Self {
+        let worst = 1.0 - terms.rooms(springs, x).into_iter().fold(1.0, f64::min);
+        let slack = if price > 0.0 { 1.2 * worst + 0.1 - 1.0 } else { 0.0 };
+        let count = terms.count();
+        let first = terms.objective(x).max(no_energy(terms.space));
+        let mu = first / count.max(1.0);
+        let rooms: Vec<f64> = terms.rooms(springs, x).iter().map(|c| c + slack).collect();
+        let duals = rooms.iter().map(|c| mu / c).collect();
+        Walk {
+            springs,
+            x,
+            slack,
+            price,
+            mu,
+            rooms,
+            duals,
         }
     }
-    let gap = mu * count / terms.objective(x).max(f64::MIN_POSITIVE);
-    Ok(Fairest { duals, steps, gap })
+
+    fn run(&mut self, terms: &Terms<D>, control: &dyn Control) -> Result<Fairest, Stop> {
+        let nothing = no_energy(terms.space);
+        let count = terms.count();
+        let mut steps = 0;
+        // A circle or a line is as fair as can be; the nearest one is given.
+        let done = self.price == 0.0 && terms.objective(self.x) <= nothing;
+        while steps < MOST_STEPS && !done {
+            control.check()?;
+            steps += 1;
+            let before = self.objective(terms);
+            let share = self.advance(terms, before);
+            if self.price > 0.0 && self.slack <= ENTERED {
+                break;
+            }
+            let now = self.objective(terms);
+            let small = self.mu * count <= GAP * now.abs().max(nothing);
+            match share {
+                None if small => break,
+                None => self.mu *= FALL,
+                Some(share) => {
+                    if small && before - now <= GAP * now.abs() {
+                        break;
+                    }
+                    if share > 0.1 {
+                        self.mu *= if share > 0.7 { FALL } else { FALL.sqrt() };
+                    }
+                }
+            }
+        }
+        let energy = terms.objective(self.x).max(nothing);
+        Ok(Fairest {
+            duals: if done { vec![0.0; self.duals.len()] } else { self.duals.clone() },
+            steps,
+            gap: if done { 0.0 } else { self.mu * count / energy },
+            slack: self.slack,
+        })
+    }
+
+    fn all_rooms(&self, terms: &Terms<D>) -> Vec<f64> {
+        let rooms = terms.rooms(self.springs, self.x);
+        rooms.iter().map(|c| c + self.slack).collect()
+    }
+
+    fn objective(&self, terms: &Terms<D>) -> f64 {
+        terms.objective(self.x) + self.price * self.slack
+    }
+
+    /// One step; the share of it that was taken.
+    fn advance(&mut self, terms: &Terms<D>, before: f64) -> Option<f64> {
+        let step = self.direction(terms)?;
+        let share = self.search(terms, &step, before)?;
+        let slopes = terms.slopes(self.springs, self.x, &step.d);
+        for ((z, c), slope) in self.duals.iter_mut().zip(&self.rooms).zip(&slopes) {
+            *z += share * (self.mu / c - *z - *z / c * (slope + step.slack));
+        }
+        *self.x = stepped(self.x, &step.d, share);
+        self.slack += share * step.slack;
+        let [a, b] = terms.space.domain();
+        let feet = self.springs.feet.clone();
+        self.springs.refresh(terms.space, self.x, REACH * (b - a));
+        self.rooms = self.all_rooms(terms);
+        if self.rooms.iter().any(|c| *c <= 0.0) {
+            // Feet that agree in some axes only may be farther away than they
+            // were: they wait.
+            self.springs.feet = feet;
+            self.rooms = self.all_rooms(terms);
+        }
+        for (z, c) in self.duals.iter_mut().zip(&self.rooms) {
+            // Near the central path, so that no dual runs away (Wächter &
+            // Biegler 2006, eq. 16).
+            let central = self.mu / c;
+            *z = z.max(central * 1e-3).min(central * 1e3);
+        }
+        Some(share)
+    }
+
+    /// The primal–dual step; slack by a bordered system.
+    fn direction(&self, terms: &Terms<D>) -> Option<Step> {
+        let mut model = terms.model(self.springs, self.x, self.weights());
+        if self.price == 0.0 {
+            let d = solve(&model)?;
+            return Some(Step { d, slack: 0.0 });
+        }
+        // a = Σ z/(c ε²) b ⊗ e couples slack and coefficients.
+        let border = terms.border(self.springs, self.x, self.weights());
+        let each = self.rooms.iter().zip(&self.duals).zip(terms.bounds.tolerance);
+        let (mut curve, mut pull) = (0.0, -self.price);
+        for ((c, z), t) in each {
+            if t.is_finite() {
+                curve += z / c;
+                pull += self.mu / c;
+            }
+        }
+        let plain = solve(&model)?;
+        model.gradient = border.iter().map(|v| -v).collect();
+        let along = solve(&model)?;
+        let dot = |v: &[f64]| border.iter().zip(v).map(|(a, b)| a * b).sum::<f64>();
+        let slack = (0.5 * pull - dot(&plain)) / (0.5 * curve - dot(&along));
+        let d = plain.iter().zip(&along).map(|(p, a)| p - slack * a).collect();
+        slack.is_finite().then_some(Step { d, slack })
+    }
+
+    fn weights(&self) -> Weights<'_> {
+        Weights {
+            duals: &self.duals,
+            rooms: &self.rooms,
+            mu: self.mu,
+        }
+    }
+
+    /// The share of a step that keeps every bound and lowers the barrier
+    /// function F + price·s − μ Σ ln c.
+    fn search(&self, terms: &Terms<D>, step: &Step, before: f64) -> Option<f64> {
+        let change: Vec<Vector<D>> = as_vectors(&step.d);
+        let pairs: Vec<Pair<D>> = (0..self.springs.points.len())
+            .filter(|i| terms.bounds.tolerance[*i].is_finite())
+            .map(|i| {
+                let u = self.springs.feet[i];
+                Pair {
+                    away: self.springs.points[i] - terms.space.point(self.x, u),
+                    change: terms.space.point(&change, u),
+                    tolerance: terms.bounds.tolerance[i],
+                    room: self.rooms[i],
+                }
+            })
+            .collect();
+        let barrier = |share: f64| -> Option<f64> {
+            let slack = self.slack + share * step.slack;
+            let mut sum = 0.0;
+            for p in &pairs {
+                let after = room(&(p.away - p.change * share), p.tolerance) + slack;
+                if after <= KEPT * p.room {
+                    return None;
+                }
+                sum -= (after / p.room).ln();
+            }
+            Some(self.mu * sum)
+        };
+        let mut share = 1.0;
+        for _ in 0..HALVINGS {
+            if let Some(barrier) = barrier(share) {
+                let energy = terms.objective(&stepped(self.x, &step.d, share));
+                let value = energy + self.price * (self.slack + share * step.slack);
+                if value + barrier < before {
+                    return Some(share);
+                }
+            }
+            share *= 0.6;
+        }
+        None
+    }
+}
+
+/// A bounded point during a line search.
+struct Pair<const D: usize> {
+    away: Vector<D>,
+    change: Vector<D>,
+    tolerance: f64,
+    room: f64,
+}
+
+/// Multipliers, rooms and μ at a step.
+#[derive(Clone, Copy)]
+struct Weights<'a> {
+    duals: &'a [f64],
+    rooms: &'a [f64],
+    mu: f64,
 }
 
 impl<const D: usize> Terms<'_, D> {
@@ -169,46 +364,29 @@ impl<const D: usize> Terms<'_, D> {
             .collect()
     }
 
-    /// The share of a step that keeps every bound and lowers the barrier
-    /// function F − μ Σ ln c.
-    fn step(
-        &self,
-        springs: &Springs<D>,
-        x: &[Vector<D>],
-        d: &[f64],
-        (mu, objective): (f64, f64),
-    ) -> Option<f64> {
-        let change: Vec<Vector<D>> = as_vectors(d);
-        let pairs: Vec<(Vector<D>, Vector<D>, f64)> = (0..springs.points.len())
-            .filter(|i| self.bounds.tolerance[*i].is_finite())
-            .map(|i| {
-                let u = springs.feet[i];
-                let e = springs.points[i] - self.space.point(x, u);
-                (e, self.space.point(&change, u), self.bounds.tolerance[i])
-            })
-            .collect();
-        let barrier = |share: f64| -> Option<f64> {
-            let mut sum = 0.0;
-            for (e, move_, t) in &pairs {
-                let (before, after) = (room(e, *t), room(&(e - move_ * share), *t));
-                if after <= KEPT * before {
-                    return None;
-                }
-                sum -= (after / before).ln();
+    /// Number of bounded points.
+    fn count(&self) -> f64 {
+        self.bounds.tolerance.iter().filter(|t| t.is_finite()).count() as f64
+    }
+
+    /// Σ z/(c ε²) b ⊗ e.
+    fn border(&self, springs: &Springs<D>, x: &[Vector<D>], weights: Weights) -> Vec<f64> {
+        let mut out = vec![0.0; x.len() * D];
+        for (i, t) in self.bounds.tolerance.iter().enumerate() {
+            if !t.is_finite() {
+                continue;
             }
-            Some(mu * sum)
-        };
-        let mut share = 1.0;
-        for _ in 0..HALVINGS {
-            if let Some(barrier) = barrier(share) {
-                let value = self.objective(&stepped(x, d, share));
-                if value + barrier < objective {
-                    return Some(share);
+            let basis = self.space.basis::<1>(springs.feet[i]);
+            let e = springs.points[i] - self.space.combine(basis.first, basis.values(), x);
+            let pull = e * (weights.duals[i] / (weights.rooms[i] * t * t));
+            for (k, b) in basis.values().iter().enumerate() {
+                let at = self.space.unknown(basis.first + k) * D;
+                for c in 0..D {
+                    out[at + c] += b * pull[c];
                 }
             }
-            share *= 0.6;
         }
-        None
+        out
     }
 
     /// The system of one step.
@@ -216,9 +394,7 @@ impl<const D: usize> Terms<'_, D> {
         &self,
         springs: &Springs<D>,
         x: &[Vector<D>],
-        duals: &[f64],
-        rooms: &[f64],
-        mu: f64,
+        weights: Weights,
     ) -> Model {
         let mut model = Model {
             matrix: self.space.matrix(D),
@@ -237,9 +413,9 @@ impl<const D: usize> Terms<'_, D> {
                     if t.is_finite() {
                         let e = springs.points[i] - self.space.point(x, springs.feet[i]);
                         let stiff = Stiff {
-                            spring: duals[i] / (t * t),
-                            wall: 2.0 * duals[i] / (rooms[i] * t.powi(4)),
-                            push: mu / (rooms[i] * t * t),
+                            spring: weights.duals[i] / (t * t),
+                            wall: 2.0 * weights.duals[i] / (weights.rooms[i] * t.powi(4)),
+                            push: weights.mu / (weights.rooms[i] * t * t),
                         };
                         sums.add(self.space, springs.feet[i], &e, &stiff);
                     }
