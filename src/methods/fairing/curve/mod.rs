@@ -1,5 +1,6 @@
 //! Fair curves through points of the plane or of space.
 
+mod cells;
 mod energy;
 mod fairness;
 mod free;
@@ -17,6 +18,8 @@ mod space;
 mod springs;
 mod start;
 mod stiffness;
+mod trace;
+mod tree;
 mod within;
 
 pub use outcome::Outcome;
@@ -49,12 +52,17 @@ fn fit_in<const D: usize>(
 ) -> Result<Outcome, FitError> {
     let task = Task::<D>::new(request, prepared);
     control.progress("ordering", 5.0);
-    let closed = prepared.closed == Some(true);
-    let (parameters, domain) = start::ordered_parameters(&task.points, closed);
-    let traced = Traced {
-        parameters,
-        domain,
-        closed,
+    let traced = if request.ordered {
+        let closed = prepared.closed == Some(true);
+        let (parameters, domain) = start::ordered_parameters(&task.points, closed);
+        Traced {
+            parameters,
+            domain,
+            closed,
+        }
+    } else {
+        let degree = input::degree_of(&request.options);
+        trace::trace(&task.points, degree, request.closed, control)?
     };
     control.progress("fairing", 15.0);
     let solved = solve::solve(request, &task, &traced, control)?;

@@ -1,0 +1,379 @@
+//! Unordered points: their order along a curve, whether it is closed, its
+//! ends.
+//!
+//! 1. Means over the cells of a lattice, cells from fine to coarse.
+//! 2. Their minimum spanning tree and the longest path in it. Cells finer
+//!    than the noise give a tree full of twigs; the finest lattice whose tree
+//!    is a path but for few points is taken.
+//! 3. Every point is projected on the path near its cell; a spline through
+//!    these parameters is fitted ([`super::free`]), the points are projected
+//!    on it, and its arc length gives the parameters of the fit proper.
+//!
+//! A gap many times the widest expected makes parts, a long twig a branch:
+//! both are named, as no single curve goes through such points.
+
+use super::cells::{Cell, cells};
+use super::free::{first_shape, settle};
+use super::holds::Holds;
+use super::slips::spread;
+use super::solve::Traced;
+use super::space::Vector;
+use super::springs::Springs;
+use super::start::{Breaks, space_for};
+use super::tree::Tree;
+use crate::methods::{FitError, Issue};
+use crate::solver::Control;
+
+/// Cells per side of the points' box, fine to coarse, in powers of √2.
+const FINEST: i32 = 18;
+const COARSEST: i32 = 4;
+/// Most cells: Prim's algorithm is quadratic.
+const MOST_CELLS: usize = 2500;
+/// Mean number of points a cell must have before its mean says more than a
+/// point, unless every point has a cell of its own.
+const LEAST_POINTS: f64 = 1.0;
+/// Share of the points that may hang on twigs.
+const TWIGS: f64 = 0.06;
+/// A twig this many cells long with this share of the points is a branch.
+const BRANCH_CELLS: f64 = 5.0;
+const BRANCH_SHARE: f64 = 0.03;
+/// A gap this many times the widest expected parts the points, if each part
+/// has this share of them.
+const PARTING_GAP: f64 = 4.0;
+const PART_SHARE: f64 = 0.03;
+/// The ends of the path of a closed curve are this near, in widest gaps.
+const CLOSING_GAP: f64 = 2.5;
+/// Spans of the first spline.
+const FIRST_SPANS: usize = 48;
+
+/// A path through cells.
+struct Path<const D: usize> {
+    nodes: Vec<Vector<D>>,
+    /// For each point its position on the path, as an index of a node.
+    near: Vec<usize>,
+    side: f64,
+    closed: bool,
+    /// Share of the points on twigs.
+    twigs: f64,
+}
+
+/// Orders points.
+///
+/// # Errors
+/// [`FitError::Invalid`] where the points are in parts or branch; when the
+/// control says stop.
+pub(super) fn trace<const D: usize>(
+    points: &[Vector<D>],
+    degree: usize,
+    closed: Option<bool>,
+    control: &dyn Control,
+) -> Result<Traced, FitError> {
+    let path = find_path(points, closed, control)?;
+    let (parameters, domain) = project(points, &path);
+    let first = Traced {
+        parameters,
+        domain,
+        closed: path.closed,
+    };
+    refine(points, degree, &first, control)
+}
+
+fn find_path<const D: usize>(
+    points: &[Vector<D>],
+    closed: Option<bool>,
+    control: &dyn Control,
+) -> Result<Path<D>, FitError> {
+    let mut best: Option<Path<D>> = None;
+    let mut complaint = None;
+    for power in (COARSEST..=FINEST).rev() {
+        control.check()?;
+        let side = 2f64.powf(-0.5 * f64::from(power));
+        let all = cells(points, side);
+        let count = all.len();
+        let dense = points.len() as f64 >= LEAST_POINTS * count as f64;
+        if count > MOST_CELLS || !dense {
+            continue;
+        }
+        if count < 4 && best.is_some() {
+            break;
+        }
+        match through(&all, points.len(), side, closed) {
+            Ok(path) if path.twigs <= TWIGS => return Ok(path),
+            Ok(path) => {
+                if best.as_ref().is_none_or(|b| path.twigs < b.twigs) {
+                    best = Some(path);
+                }
+            }
+            Err(issue) => complaint = Some(issue),
+        }
+    }
+    match (best, complaint) {
+        (Some(path), None) => Ok(path),
+        (_, Some(issue)) => Err(FitError::Invalid(vec![issue])),
+        (None, None) => Err(FitError::Numerical("no path through the points".into())),
+    }
+}
+
+/// The path through the cells of one lattice.
+fn through<const D: usize>(
+    all: &[Cell<D>],
+    count: usize,
+    side: f64,
+    closed: Option<bool>,
+) -> Result<Path<D>, Issue> {
+    let means: Vec<Vector<D>> = all.iter().map(|c| c.mean).collect();
+    let tree = Tree::spanning(&means);
+    let total: f64 = tree.edges().map(|e| e.2).sum();
+    // Gaps of points strewn at random are exponential: the widest of n is
+    // about ln n times the mean.
+    let widest = (total / count as f64 * (count as f64).ln()).max(side);
+    check_parts(all, &tree, count, PARTING_GAP * widest)?;
+    let nodes = tree.longest_path();
+    let hung = tree.hang_on(&nodes);
+    let mut near = vec![0; count];
+    let mut twigs = 0;
+    let mut branch = (0, 0.0_f64);
+    for (cell, (at, depth)) in all.iter().zip(&hung) {
+        for i in &cell.points {
+            near[*i] = *at;
+        }
+        if *depth > 0.0 {
+            twigs += cell.points.len();
+        }
+        if *depth > BRANCH_CELLS * widest {
+            branch = (branch.0 + cell.points.len(), branch.1.max(*depth));
+        }
+    }
+    if branch.0 as f64 > BRANCH_SHARE * count as f64 {
+        return Err(branches(all, &hung, branch));
+    }
+    let path: Vec<Vector<D>> = nodes.iter().map(|k| means[*k]).collect();
+    let gap = (path[0] - path[path.len() - 1]).norm();
+    let loops = path.len() > 5 && gap <= CLOSING_GAP * widest && gap < 0.2 * total;
+    Ok(Path {
+        near,
+        side,
+        closed: closed.unwrap_or(loops),
+        twigs: twigs as f64 / count as f64,
+        nodes: path,
+    })
+}
+
+fn check_parts<const D: usize>(
+    all: &[Cell<D>],
+    tree: &Tree,
+    count: usize,
+    gap: f64,
+) -> Result<(), Issue> {
+    let size = |part: &Vec<usize>| part.iter().map(|k| all[*k].points.len()).sum::<usize>();
+    let parts = tree.parts(gap);
+    let large: Vec<&Vec<usize>> = parts
+        .iter()
+        .filter(|p| size(p) as f64 > PART_SHARE * count as f64 && size(p) > 2)
+        .collect();
+    if large.len() < 2 {
+        return Ok(());
+    }
+    let sizes: Vec<String> = large.iter().map(|p| size(p).to_string()).collect();
+    let one = |p: &Vec<usize>| all[p[0]].points[0];
+    Err(Issue {
+        path: vec!["input".into(), "points".into()],
+        code: "several-parts",
+        message: format!(
+            "the points lie in {} parts of {} points; point {} belongs to one, point {} to another",
+            large.len(),
+            sizes.join(", "),
+            one(large[0]),
+            one(large[1])
+        ),
+        hint: Some("send one curve a request, or the points in their order".into()),
+    })
+}
+
+fn branches<const D: usize>(
+    all: &[Cell<D>],
+    hung: &[(usize, f64)],
+    (count, _): (usize, f64),
+) -> Issue {
+    let deepest = hung
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.1.total_cmp(&b.1.1))
+        .map_or(0, |(k, _)| k);
+    let tip = all[deepest].points[0];
+    Issue {
+        path: vec!["input".into(), "points".into(), tip.to_string()],
+        code: "branch",
+        message: format!(
+            "the points branch: {count} of them, among them point {tip}, hang on the longest \
+             path as a side branch"
+        ),
+        hint: Some("send one curve a request, or the points in their order".into()),
+    }
+}
+
+/// Parameters by projection on the path, near each point's cell; points
+/// beyond an end get parameters beyond it.
+fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [f64; 2]) {
+    const REACH: usize = 2;
+    let mut nodes = path.nodes.clone();
+    if path.closed {
+        nodes.push(path.nodes[0]);
+    }
+    let mut length = vec![0.0];
+    for w in nodes.windows(2) {
+        length.push(length[length.len() - 1] + (w[1] - w[0]).norm());
+    }
+    let total = length[length.len() - 1];
+    let last = nodes.len() - 2;
+    let mut parameters: Vec<f64> = points
+        .iter()
+        .zip(&path.near)
+        .map(|(p, near)| {
+            let mut best = (f64::INFINITY, 0.0);
+            for k in near.saturating_sub(REACH)..=(near + REACH).min(last) {
+                let along = nodes[k + 1] - nodes[k];
+                let t = (p - nodes[k]).dot(&along) / along.norm_squared();
+                let low = if k == 0 && !path.closed { f64::NEG_INFINITY } else { 0.0 };
+                let high = if k == last && !path.closed { f64::INFINITY } else { 1.0 };
+                let t = t.clamp(low, high);
+                let distance = (p - (nodes[k] + along * t)).norm();
+                if distance < best.0 {
+                    best = (distance, length[k] + t * along.norm());
+                }
+            }
+            best.1
+        })
+        .collect();
+    if path.closed {
+        return (parameters, [0.0, total]);
+    }
+    // An end cell's mean lies half a cell inside; its points say how far out.
+    let low = parameters.iter().copied().fold(0.0, f64::min).max(-2.0 * path.side);
+    let high = parameters.iter().copied().fold(total, f64::max).min(total + 2.0 * path.side);
+    for u in &mut parameters {
+        *u = (*u - low).clamp(0.0, high - low);
+    }
+    (parameters, [0.0, high - low])
+}
+
+/// A first fit, and from it parameters near arc length.
+fn refine<const D: usize>(
+    points: &[Vector<D>],
+    degree: usize,
+    first: &Traced,
+    control: &dyn Control,
+) -> Result<Traced, FitError> {
+    let intervals = if first.closed { points.len() } else { points.len() - 1 };
+    let least = if first.closed { 2 * degree + 2 } else { 1 };
+    let spans = FIRST_SPANS.min(intervals).max(least);
+    let data = (&first.parameters[..], first.domain, first.closed);
+    let space = space_for(degree, data, spans, &Breaks::default())
+        .map_err(|e| FitError::Numerical(e.to_string()))?;
+    let weights = vec![1.0; points.len()];
+    let feet = first.parameters.clone();
+    let mut springs = Springs::new(points.to_vec(), weights, feet, Vector::repeat(1.0));
+    if !first.closed {
+        springs.pin(extremes(&first.parameters));
+    }
+    let broken = || FitError::Numerical("the points do not determine a curve".into());
+    let mut shape = first_shape(space, &springs, None).ok_or_else(broken)?;
+    settle(&mut shape, &mut springs, &mut Holds::none(), control)?;
+    // The pinned ends were a guess: now every point has a foot.
+    springs.pinned.fill(false);
+    let [a, b] = shape.space.domain();
+    springs.refresh(&shape.space, &shape.x, 0.05 * (b - a));
+    let lengths = Lengths::new(&shape);
+    let mut parameters: Vec<f64> = springs.feet.iter().map(|u| lengths.at(*u)).collect();
+    if first.closed {
+        let domain = [0.0, lengths.total()];
+        return Ok(Traced {
+            parameters,
+            domain,
+            closed: true,
+        });
+    }
+    // Beyond the ends on the tangents.
+    let residuals = springs.residuals(&shape.space, &shape.x);
+    for ((s, u), e) in parameters.iter_mut().zip(&springs.feet).zip(&residuals) {
+        if *u <= a || *u >= b {
+            let t = shape.space.jet(&shape.x, *u).d1;
+            *s += e.dot(&t) / t.norm().max(f64::MIN_POSITIVE);
+        }
+    }
+    let sizes: Vec<f64> = residuals.iter().map(Vector::norm).collect();
+    let noise = spread::<D>(&sizes, &springs.weights);
+    let domain = ends(&parameters, noise);
+    for s in &mut parameters {
+        *s = s.clamp(domain[0], domain[1]);
+    }
+    Ok(Traced {
+        parameters,
+        domain,
+        closed: false,
+    })
+}
+
+fn extremes(parameters: &[f64]) -> [usize; 2] {
+    let by = |a: &usize, b: &usize| parameters[*a].total_cmp(&parameters[*b]);
+    let all = || 0..parameters.len();
+    [all().min_by(by).unwrap_or(0), all().max_by(by).unwrap_or(0)]
+}
+
+/// Where the points begin and end. Dense points reach beyond the end by their
+/// noise; but their number up to a place well inside, at their density, tells
+/// how far outside the end is. Sparse ones end with the outermost.
+fn ends(parameters: &[f64], noise: f64) -> [f64; 2] {
+    /// Points within the reach of the noise from which density tells more.
+    const DENSE: usize = 40;
+    /// Noise reaches this many deviations.
+    const REACH: f64 = 5.0;
+    let mut sorted = parameters.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    let length = sorted[n - 1] - sorted[0];
+    let k = (REACH * noise / length * n as f64).ceil() as usize;
+    if k < DENSE || 4 * k >= n / 4 {
+        return [sorted[0], sorted[n - 1]];
+    }
+    let edge = |v: &dyn Fn(usize) -> f64| {
+        let spacing = (v(4 * k) - v(k)) / (3 * k) as f64;
+        v(k) - k as f64 * spacing
+    };
+    [edge(&|i| sorted[i]), edge(&|i| sorted[n - 1 - i])]
+}
+
+/// Arc length along a shape, from a table.
+struct Lengths {
+    domain: [f64; 2],
+    table: Vec<f64>,
+}
+
+impl Lengths {
+    /// Steps of the table: the curve runs at nearly constant speed.
+    const STEPS: usize = 4096;
+
+    fn new<const D: usize>(shape: &super::free::Shape<D>) -> Self {
+        let domain = shape.space.domain();
+        let step = (domain[1] - domain[0]) / Self::STEPS as f64;
+        let mut table = vec![0.0];
+        let mut sum = 0.0;
+        for k in 0..Self::STEPS {
+            // Midpoint rule: exact to 1e-6 and better, for parameters only.
+            let u = domain[0] + (k as f64 + 0.5) * step;
+            sum += step * shape.space.jet(&shape.x, u).d1.norm();
+            table.push(sum);
+        }
+        Lengths { domain, table }
+    }
+
+    fn at(&self, u: f64) -> f64 {
+        let place = (u - self.domain[0]) / (self.domain[1] - self.domain[0]) * Self::STEPS as f64;
+        let k = (place.max(0.0) as usize).min(Self::STEPS - 1);
+        self.table[k] + (place - k as f64) * (self.table[k + 1] - self.table[k])
+    }
+
+    fn total(&self) -> f64 {
+        self.table[Self::STEPS]
+    }
+}
