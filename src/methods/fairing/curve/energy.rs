@@ -145,6 +145,8 @@ pub(super) struct Energy {
     pub(super) relief: Vec<f64>,
     /// The paper's energy in place of the geometric one.
     pub(super) quadratic: Option<Quadratic>,
+    /// ω² at the nodes, from [`Self::spare_arcs`]; empty: 0.
+    turning: Vec<f64>,
 }
 
 /// A quadratic model about the current coefficients: cost, gradient/2 and the
@@ -165,7 +167,24 @@ impl Energy {
             nodes,
             relief,
             quadratic,
+            turning: Vec::new(),
         }
+    }
+
+    /// From now on the jerk of the paper's energy is r‴ + ω² r′ with ω² =
+    /// |r″_⊥|²/|r′|² of the present shape: what r‴ is more than on the arc of
+    /// the present curvature, on which r‴ = −ω² r′.
+    pub(super) fn spare_arcs<const D: usize>(&mut self, space: &Space, x: &[Vector<D>]) {
+        let turning = |node: &Node| {
+            let d = derivatives(space, node, x);
+            curvature(&d).powi(2) * d[0].norm_squared()
+        };
+        self.turning = self.nodes.iter().map(turning).collect();
+    }
+
+    /// ω² at a node.
+    fn turning(&self, node: usize) -> f64 {
+        self.turning.get(node).copied().unwrap_or(0.0)
     }
 
     /// Weighs sharp bends of the present shape down; see [`relief`].
@@ -193,8 +212,11 @@ impl Energy {
     /// ∫ weight · |(dk/ds)_⊥|² ds, and the unevenness with its own weight.
     pub(super) fn cost<const D: usize>(&self, space: &Space, x: &[Vector<D>]) -> [f64; 2] {
         let mut sums = [0.0; 2];
-        for (node, relief) in self.nodes.iter().zip(&self.relief) {
-            let d = derivatives(space, node, x);
+        for (k, (node, relief)) in self.nodes.iter().zip(&self.relief).enumerate() {
+            let mut d = derivatives(space, node, x);
+            if self.quadratic.is_some() {
+                d[2] += d[0] * self.turning(k);
+            }
             sums[0] += node.weight
                 * match &self.quadratic {
                     None => relief * variation_value(&d).norm_squared(),
@@ -203,6 +225,10 @@ impl Energy {
                         weights.iter().zip(&d).map(square).sum()
                     }
                 };
+            if self.quadratic.is_some() {
+                // It depends on the parameter and needs no help with it.
+                continue;
+            }
             let uneven = unevenness(&d).0;
             sums[1] += EVEN_SPEED * node.weight * uneven * uneven;
         }
@@ -219,13 +245,20 @@ impl Energy {
         model: &mut Model,
     ) {
         let mut block = Block::<D>::new(space.degree() + 1);
-        for (node, relief) in self.nodes.iter().zip(&self.relief) {
+        for (k, (node, relief)) in self.nodes.iter().zip(&self.relief).enumerate() {
             let d = derivatives(space, node, x);
             block.clear(node.basis.first);
             let strength = stiffness[0] * node.weight;
             match &self.quadratic {
                 None => push_variation(&mut block, &node.basis, &d, strength * relief),
-                Some(weights) => push_quadratic(&mut block, &node.basis, &d, (weights, strength)),
+                Some(weights) => {
+                    let omega = self.turning(k);
+                    push_quadratic(&mut block, (&node.basis, omega), &d, (weights, strength));
+                }
+            }
+            if self.quadratic.is_some() {
+                block.scatter(space, model);
+                continue;
             }
             let (uneven, by) = unevenness(&d);
             let strength = stiffness[1] * EVEN_SPEED * node.weight;
@@ -250,7 +283,7 @@ fn push_variation<const D: usize>(
 
 fn push_quadratic<const D: usize>(
     block: &mut Block<D>,
-    basis: &BasisJet<4>,
+    (basis, turning): (&BasisJet<4>, f64),
     d: &[Vector<D>; 3],
     (weights, strength): (&Quadratic, f64),
 ) {
@@ -258,7 +291,12 @@ fn push_quadratic<const D: usize>(
         for c in 0..D {
             let mut by = [Vector::zeros(); 3];
             by[k][c] = 1.0;
-            block.push(basis, &by, d[k][c], strength * weight);
+            let mut value = d[k][c];
+            if k == 2 {
+                by[0][c] = turning;
+                value += turning * d[0][c];
+            }
+            block.push(basis, &by, value, strength * weight);
         }
     }
 }

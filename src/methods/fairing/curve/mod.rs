@@ -8,6 +8,7 @@ mod holds;
 mod input;
 mod net;
 pub mod outcome;
+mod paper;
 mod relax;
 mod report;
 pub mod request;
@@ -65,7 +66,10 @@ fn fit_in<const D: usize>(
         trace::trace(&task.points, degree, request.closed, control)?
     };
     control.progress("fairing", 15.0);
-    let solved = solve::solve(request, &task, &traced, control)?;
+    let solved = match request.options.solver {
+        request::Solver::Own => solve::solve(request, &task, &traced, control)?,
+        request::Solver::Paper => paper::solve(request, &task, &traced, control)?,
+    };
     control.progress("measuring", 90.0);
     report::outcome(request, prepared, &traced, &solved, control)
 }
