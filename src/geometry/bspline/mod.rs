@@ -18,6 +18,7 @@ mod curve;
 mod curve_forms;
 mod deboor;
 mod error;
+mod gram;
 mod interpolate;
 mod join;
 mod kinks;
@@ -30,6 +31,7 @@ mod surface_forms;
 pub use basis::{BasisJet, basis_jet};
 pub use curve::{BSplineCurve, CurveJet};
 pub use error::SplineError;
+pub use gram::gram;
 pub use interpolate::{
     Parametrization, complete_cubic, interpolate, interpolate_at, interpolation_parameters,
 };

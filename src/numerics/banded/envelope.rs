@@ -161,6 +161,17 @@ impl EnvelopeMatrix {
         axpy(scale, &other.values, &mut self.values);
     }
 
+    /// Replaces every stored entry (i, j), j ≤ i, by `change(i, j, entry)`.
+    pub fn scale_entries(&mut self, change: impl Fn(usize, usize, f64) -> f64) {
+        for i in 0..self.order() {
+            let (first, start) = (self.shape.first[i], self.shape.start[i]);
+            for j in first..=i {
+                let slot = &mut self.values[start + j - first];
+                *slot = change(i, j, *slot);
+            }
+        }
+    }
+
     /// `y = A x`.
     #[must_use]
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {

@@ -1,0 +1,1 @@
+//! Offset tables faired as one surface.

@@ -1,0 +1,117 @@
+//! Feet: the nearest place on a sheet to a point, from a start nearby (the
+//! sliding springs of the paper, §2.3, eq. 11).
+//!
+//! Gauss–Newton on (u, v), held in the domain: a parameter at its bound that
+//! wants to go further stays, and the other is moved alone. The step is the
+//! exact one on a plane and errs by κ·d on a curved sheet (κ curvature, d
+//! distance), so that two or three steps do where points are near.
+
+use super::net::{Sheet, Tangents};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// A foot.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Foot {
+    /// Its parameters.
+    pub(in super::super) at: [f64; 2],
+    /// The sheet there.
+    pub(in super::super) sheet: Tangents,
+    /// From foot to point.
+    pub(in super::super) offset: Vector3<f64>,
+}
+
+impl Foot {
+    /// Distance of the point from its foot.
+    pub(in super::super) fn distance(&self) -> f64 {
+        self.offset.norm()
+    }
+
+    /// Distance with the sign of the side of the normal on which the point is.
+    pub(in super::super) fn signed(&self) -> f64 {
+        let along = self.sheet.normal().map_or(1.0, |n| n.dot(&self.offset));
+        self.distance().copysign(along)
+    }
+}
+
+/// A step shorter than this share of the domain changes nothing.
+const SETTLED: f64 = 1e-10;
+/// Halvings of a step that leads away from the point.
+const HALVINGS: usize = 4;
+
+/// The foot of `point` near `start` after at most `steps` steps; never farther
+/// from the point than the start was.
+pub(in super::super) fn foot(
+    sheet: &Sheet,
+    point: &Vector3<f64>,
+    start: [f64; 2],
+    steps: usize,
+) -> Foot {
+    let look = |at: [f64; 2]| {
+        let tangents = sheet.tangents(at);
+        Foot {
+            at,
+            sheet: tangents,
+            offset: point - tangents.point,
+        }
+    };
+    let domain = sheet.net.domain();
+    let mut best = look(sheet.net.clamp(start));
+    for _ in 0..steps {
+        let mut step = free_step(&best, domain);
+        let mut moved = false;
+        for _ in 0..HALVINGS {
+            let next = [best.at[0] + step[0], best.at[1] + step[1]];
+            let trial = look(sheet.net.clamp(next));
+            if trial.offset.norm_squared() < best.offset.norm_squared() {
+                best = trial;
+                moved = true;
+                break;
+            }
+            step = step.map(|s| 0.5 * s);
+        }
+        let settled = (0..2).all(|k| step[k].abs() < SETTLED * (domain[k][1] - domain[k][0]));
+        if !moved || settled {
+            break;
+        }
+    }
+    best
+}
+
+/// The Gauss–Newton step that leaves bounds alone which it would cross.
+fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> [f64; 2] {
+    let (du, dv) = (&foot.sheet.du, &foot.sheet.dv);
+    let (e, f, g) = (du.dot(du), du.dot(dv), dv.dot(dv));
+    let slope = [du.dot(&foot.offset), dv.dot(&foot.offset)];
+    let held = [0, 1].map(|k| {
+        (foot.at[k] <= domain[k][0] && slope[k] < 0.0)
+            || (foot.at[k] >= domain[k][1] && slope[k] > 0.0)
+    });
+    let alone = |s: f64, square: f64| if square > 0.0 { s / square } else { 0.0 };
+    let area = e * g - f * f;
+    match held {
+        [true, true] => [0.0, 0.0],
+        [true, false] => [0.0, alone(slope[1], g)],
+        [false, true] => [alone(slope[0], e), 0.0],
+        [false, false] if area > 1e-12 * e * g => [
+            (g * slope[0] - f * slope[1]) / area,
+            (e * slope[1] - f * slope[0]) / area,
+        ],
+        [false, false] => [0.5 * alone(slope[0], e), 0.5 * alone(slope[1], g)],
+    }
+}
+
+/// Feet of all points, in parallel.
+pub(in super::super) fn feet(
+    sheet: &Sheet,
+    points: &[Vector3<f64>],
+    starts: &[[f64; 2]],
+    steps: usize,
+) -> Vec<Foot> {
+    points
+        .par_iter()
+        .zip(starts)
+        .with_min_len(512)
+        .map(|(p, at)| foot(sheet, p, *at, steps))
+        .collect()
+}

@@ -1,0 +1,205 @@
+//! The space of a fit: a tensor product of two knot vectors, its numbering of
+//! the unknowns, and the sheets that live in it.
+
+use crate::geometry::{BasisJet, Knots, basis_jet};
+use nalgebra::{Point3, Vector3};
+
+/// Most basis functions that act in one direction: degree 5 and one.
+pub(in super::super) const MOST_ACTING: usize = 6;
+
+/// A tensor-product spline space with equal degrees (3, 4 or 5) in u and v.
+#[derive(Debug, Clone, PartialEq)]
+pub(in super::super) struct Net {
+    /// Knots in u and in v.
+    pub(in super::super) knots: [Knots; 2],
+}
+
+impl Net {
+    pub(in super::super) fn new(knots: [Knots; 2]) -> Self {
+        debug_assert_eq!(knots[0].degree(), knots[1].degree());
+        debug_assert!(knots[0].degree() < MOST_ACTING);
+        Net { knots }
+    }
+
+    /// Control points in u and v.
+    pub(in super::super) fn counts(&self) -> [usize; 2] {
+        [0, 1].map(|k| self.knots[k].control_count())
+    }
+
+    /// Number of control points.
+    pub(in super::super) fn len(&self) -> usize {
+        self.counts().iter().product()
+    }
+
+    pub(in super::super) fn degree(&self) -> usize {
+        self.knots[0].degree()
+    }
+
+    /// The number of control point (i, j): the shorter direction runs
+    /// fastest, so that the band is as narrow as it can be.
+    pub(in super::super) fn index(&self, i: usize, j: usize) -> usize {
+        let [nu, nv] = self.counts();
+        if nv <= nu { i * nv + j } else { j * nu + i }
+    }
+
+    /// Diagonals below the main one of the matrices of this net.
+    pub(in super::super) fn half_bandwidth(&self) -> usize {
+        let [nu, nv] = self.counts();
+        self.degree() * (nu.min(nv) + 1)
+    }
+
+    /// Basis functions in u and v with `R − 1` derivatives.
+    pub(in super::super) fn jets<const R: usize>(&self, [u, v]: [f64; 2]) -> [BasisJet<R>; 2] {
+        [
+            basis_jet::<R>(&self.knots[0], u),
+            basis_jet::<R>(&self.knots[1], v),
+        ]
+    }
+
+    /// First and last parameter of each direction.
+    pub(in super::super) fn domain(&self) -> [[f64; 2]; 2] {
+        [self.knots[0].domain(), self.knots[1].domain()]
+    }
+
+    /// (u, v) moved into the domain.
+    pub(in super::super) fn clamp(&self, at: [f64; 2]) -> [f64; 2] {
+        let domain = self.domain();
+        [0, 1].map(|k| at[k].clamp(domain[k][0], domain[k][1]))
+    }
+}
+
+/// A sheet in space over a net; control points numbered by [`Net::index`].
+#[derive(Debug, Clone)]
+pub(in super::super) struct Sheet {
+    pub(in super::super) net: Net,
+    pub(in super::super) control: Vec<Vector3<f64>>,
+}
+
+/// Place and first derivatives on a sheet.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Tangents {
+    pub(in super::super) point: Vector3<f64>,
+    pub(in super::super) du: Vector3<f64>,
+    pub(in super::super) dv: Vector3<f64>,
+}
+
+/// Place, first and second derivatives on a sheet.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Bends {
+    pub(in super::super) first: Tangents,
+    pub(in super::super) duu: Vector3<f64>,
+    pub(in super::super) duv: Vector3<f64>,
+    pub(in super::super) dvv: Vector3<f64>,
+}
+
+impl Tangents {
+    /// The unit normal; `None` where the sheet is singular.
+    pub(in super::super) fn normal(&self) -> Option<Vector3<f64>> {
+        self.du.cross(&self.dv).try_normalize(f64::MIN_POSITIVE)
+    }
+}
+
+impl Bends {
+    /// Gaussian and mean curvature (do Carmo §3.3); `None` where singular.
+    pub(in super::super) fn curvatures(&self) -> Option<[f64; 2]> {
+        let n = self.first.normal()?;
+        let (du, dv) = (&self.first.du, &self.first.dv);
+        let (e, f, g) = (du.dot(du), du.dot(dv), dv.dot(dv));
+        let (l, m, k) = (self.duu.dot(&n), self.duv.dot(&n), self.dvv.dot(&n));
+        let area = e * g - f * f;
+        (area > 0.0).then(|| {
+            [
+                (l * k - m * m) / area,
+                (e * k - 2.0 * f * m + g * l) / (2.0 * area),
+            ]
+        })
+    }
+}
+
+impl Sheet {
+    /// The sheet (u, v, h) over its own parameter plane from the control
+    /// heights of a field h(u, v): Greville abscissae reproduce u and v.
+    pub(in super::super) fn of_heights(net: &Net, heights: &[[f64; 1]]) -> Self {
+        let [nu, nv] = net.counts();
+        let mut control = vec![Vector3::zeros(); net.len()];
+        for i in 0..nu {
+            for j in 0..nv {
+                let k = net.index(i, j);
+                control[k] = Vector3::new(
+                    net.knots[0].greville(i),
+                    net.knots[1].greville(j),
+                    heights[k][0],
+                );
+            }
+        }
+        Sheet {
+            net: net.clone(),
+            control,
+        }
+    }
+
+    /// The sheet of the three coordinate fields.
+    pub(in super::super) fn of_points(net: &Net, control: &[[f64; 3]]) -> Self {
+        Sheet {
+            net: net.clone(),
+            control: control.iter().map(|c| Vector3::from(*c)).collect(),
+        }
+    }
+
+    /// Sums `Σ N_i⁽ᵃ⁾(u) N_j⁽ᵇ⁾(v) P_ij` for the wanted pairs (a, b).
+    fn sums<const R: usize, const S: usize>(
+        &self,
+        at: [f64; 2],
+        orders: [[usize; 2]; S],
+    ) -> [Vector3<f64>; S] {
+        let [ju, jv] = self.net.jets::<R>(at);
+        let [nu, nv] = self.net.counts();
+        let (step_i, step_j) = if nv <= nu { (nv, 1) } else { (1, nu) };
+        let start = ju.first * step_i + jv.first * step_j;
+        let mut sums = [Vector3::zeros(); S];
+        for a in 0..ju.count {
+            let mut rows = [Vector3::zeros(); R];
+            for b in 0..jv.count {
+                let p = &self.control[start + a * step_i + b * step_j];
+                for (order, row) in rows.iter_mut().enumerate() {
+                    *row += p * jv.derivative(order)[b];
+                }
+            }
+            for (sum, [ou, ov]) in sums.iter_mut().zip(orders) {
+                *sum += rows[ov] * ju.derivative(ou)[a];
+            }
+        }
+        sums
+    }
+
+    /// The point at (u, v).
+    pub(in super::super) fn point(&self, at: [f64; 2]) -> Vector3<f64> {
+        self.sums::<1, 1>(at, [[0, 0]])[0]
+    }
+
+    /// Point and first derivatives at (u, v).
+    pub(in super::super) fn tangents(&self, at: [f64; 2]) -> Tangents {
+        let [point, du, dv] = self.sums::<2, 3>(at, [[0, 0], [1, 0], [0, 1]]);
+        Tangents { point, du, dv }
+    }
+
+    /// Point, first and second derivatives at (u, v).
+    pub(in super::super) fn bends(&self, at: [f64; 2]) -> Bends {
+        let orders = [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]];
+        let [point, du, dv, duu, duv, dvv] = self.sums::<3, 6>(at, orders);
+        Bends {
+            first: Tangents { point, du, dv },
+            duu,
+            duv,
+            dvv,
+        }
+    }
+
+    /// Control points with `v` fastest, as surfaces want them.
+    pub(in super::super) fn points_v_fastest(&self) -> Vec<Point3<f64>> {
+        let [nu, nv] = self.net.counts();
+        (0..nu * nv)
+            .map(|k| Point3::from(self.control[self.net.index(k / nv, k % nv)]))
+            .collect()
+    }
+}

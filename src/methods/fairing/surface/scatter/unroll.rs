@@ -1,0 +1,219 @@
+//! Folded sheets: unrolled along their geodesics, then fitted from coarse to
+//! fine with feet taken anew at each level.
+//!
+//! The first map comes from the nodes alone; a coarse sheet through them makes
+//! it smooth, and gives every point a foot to start from. At feet only the
+//! part of the noise across the sheet is left, one component a point.
+
+use super::super::feet::feet;
+use super::super::fit::{Fit, energy, median_scale, places, springs_to};
+use super::super::input::issue;
+use super::super::net::{Net, Sheet};
+use super::super::springs::gather;
+use super::super::stiffness::{Chosen, Likelihood, choose, fit_with};
+use super::super::task::Task;
+use super::geodesics::flat_map;
+use super::levels::{self, GAIN, LEVELS, SAMPLE};
+use super::voxels::Nodes;
+use crate::methods::FitError;
+use crate::numerics::EnvelopeMatrix;
+use crate::solver::Control;
+use nalgebra::Vector3;
+
+/// Spans of the sheet through the nodes.
+const NODE_SPANS: usize = 10;
+/// Rounds of feet and fits: on the nodes, on a level, at the end.
+const ROUNDS: [usize; 3] = [4, 2, 2];
+/// Gauss–Newton steps a round: the last round's feet are the start.
+const FOOT_STEPS: usize = 4;
+/// Residuals of so many σ lose their pull in a robust fit.
+const CUT: f64 = 6.0;
+
+/// Points with their feet.
+struct Cloud {
+    points: Vec<Vector3<f64>>,
+    at: Vec<[f64; 2]>,
+    weight: Vec<f64>,
+}
+
+/// A sheet with its stiffness.
+struct Level {
+    net: Net,
+    energy: EnvelopeMatrix,
+    model: Likelihood,
+    chosen: Chosen<3>,
+}
+
+impl Level {
+    fn sheet(&self) -> Sheet {
+        Sheet::of_points(&self.net, &self.chosen.control)
+    }
+}
+
+/// Fits a folded sheet.
+///
+/// # Errors
+/// [`FitError::Invalid`] where the sheet cannot be unrolled, else as
+/// [`choose`].
+pub(in super::super) fn fit(
+    task: &Task,
+    nodes: &Nodes,
+    control: &dyn Control,
+) -> Result<Fit, FitError> {
+    let map = flat_map(nodes).ok_or_else(|| {
+        FitError::Invalid(vec![issue(
+            &["input", "points"],
+            "not-a-sheet",
+            "the points cannot be unrolled into one sheet: they close all round, branch, or have \
+             many points off the sheet",
+            Some("cut them along a line, for example by leaving out a sector, and give each sheet \
+                  by itself"),
+        )])
+    })?;
+    control.check()?;
+    let domain = levels::domain(&map);
+    let mut cloud = Cloud {
+        points: nodes.place.clone(),
+        at: map.clone(),
+        weight: nodes.count.iter().map(|n| *n as f64).collect(),
+    };
+    let mut level = first(task, domain, &cloud, control)?;
+    for _ in 0..ROUNDS[0] {
+        refine(task, &mut level, &mut cloud, (true, control))?;
+    }
+    let stride = task.points.len().div_ceil(SAMPLE).max(1);
+    let mut sample = seated(task, nodes, (&level.sheet(), &cloud.at), stride);
+    for _ in 0..ROUNDS[1] {
+        refine(task, &mut level, &mut sample, (true, control))?;
+    }
+    for spans in LEVELS.into_iter().filter(|s| *s > NODE_SPANS) {
+        control.progress("fitting", 5.0 + 0.2 * spans as f64);
+        let net = levels::net(domain, spans, task.control_points)?;
+        if !levels::affordable(&net, task.points.len()) {
+            break;
+        }
+        let mut finer = on_net(task, net, &sample, (Some(level.chosen.lambda), control))?;
+        for _ in 0..ROUNDS[1] {
+            refine(task, &mut finer, &mut sample, (true, control))?;
+        }
+        let gain = 1.0 - (finer.chosen.noise / level.chosen.noise).powi(2);
+        if gain < GAIN {
+            break;
+        }
+        level = finer;
+        if task.control_points.is_some() {
+            break;
+        }
+    }
+    finish(task, level, (sample, nodes, &cloud.at), control)
+}
+
+/// The last rounds, with all points.
+fn finish(
+    task: &Task,
+    mut level: Level,
+    (sample, nodes, map): (Cloud, &Nodes, &[[f64; 2]]),
+    control: &dyn Control,
+) -> Result<Fit, FitError> {
+    let mut all = if sample.points.len() == task.points.len() {
+        sample
+    } else {
+        seated(task, nodes, (&level.sheet(), map), 1)
+    };
+    for _ in 0..ROUNDS[2] {
+        control.check()?;
+        refine(task, &mut level, &mut all, (false, control))?;
+    }
+    Ok(Fit {
+        sheet: level.sheet(),
+        at: all.at,
+        lambda: level.chosen.lambda,
+        noise: level.chosen.noise,
+        weight: all.weight,
+        energy: level.energy,
+        model: level.model,
+    })
+}
+
+fn first(
+    task: &Task,
+    domain: [[f64; 2]; 2],
+    cloud: &Cloud,
+    control: &dyn Control,
+) -> Result<Level, FitError> {
+    let net = levels::net(domain, NODE_SPANS, None)?;
+    on_net(task, net, cloud, (None, control))
+}
+
+fn on_net(
+    task: &Task,
+    net: Net,
+    cloud: &Cloud,
+    (near, control): (Option<f64>, &dyn Control),
+) -> Result<Level, FitError> {
+    let term = energy(task.energy, levels::order(task.points.len()), net.domain());
+    let model = Likelihood {
+        free: term.free_dimension(levels::DEGREE),
+        components: 1.0,
+    };
+    let energy = term.matrix(&net);
+    let springs = springs_to(&cloud.points, &cloud.at, &cloud.weight);
+    let chosen = choose(&gather(&net, &springs), &energy, model, (near, control))?;
+    Ok(Level {
+        net,
+        energy,
+        model,
+        chosen,
+    })
+}
+
+/// New feet, new weights where a robust fit was asked, new sheet; with a new
+/// stiffness where `search`.
+fn refine(
+    task: &Task,
+    level: &mut Level,
+    cloud: &mut Cloud,
+    (search, control): (bool, &dyn Control),
+) -> Result<(), FitError> {
+    control.check()?;
+    let feet = feet(&level.sheet(), &cloud.points, &cloud.at, FOOT_STEPS);
+    cloud.at = places(&feet);
+    let mut springs = springs_to(&cloud.points, &cloud.at, &cloud.weight);
+    if task.robust {
+        let distances: Vec<f64> = feet.iter().map(|f| f.distance()).collect();
+        let cut = CUT * median_scale(&distances, 1);
+        for (w, d) in springs.weight.iter_mut().zip(&distances) {
+            let t = (d / cut.max(f64::MIN_POSITIVE)).min(1.0);
+            *w *= (1.0 - t * t).powi(2);
+        }
+    }
+    let normal = gather(&level.net, &springs);
+    let near = level.chosen.lambda;
+    level.chosen = if search {
+        choose(&normal, &level.energy, level.model, (Some(near), control))?
+    } else {
+        fit_with(&normal, &level.energy, near, level.model)
+            .ok_or_else(|| FitError::Numerical("the level has no fit".into()))?
+    };
+    Ok(())
+}
+
+/// Every `stride`-th point with its foot on a sheet, from its node's place.
+fn seated(
+    task: &Task,
+    nodes: &Nodes,
+    (sheet, map): (&Sheet, &[[f64; 2]]),
+    stride: usize,
+) -> Cloud {
+    let points: Vec<Vector3<f64>> = task.points.iter().step_by(stride).copied().collect();
+    let starts: Vec<[f64; 2]> = points
+        .iter()
+        .map(|p| map[nodes.at(p).unwrap_or_else(|| nodes.nearest(p))])
+        .collect();
+    let at = places(&feet(sheet, &points, &starts, 2 * FOOT_STEPS));
+    Cloud {
+        weight: task.weight.iter().step_by(stride).copied().collect(),
+        points,
+        at,
+    }
+}
