@@ -3,7 +3,7 @@
 use super::net::Sheet;
 use super::outcome::{Fairness, Isophotes};
 use super::region::Region;
-use super::task::Frame;
+use super::task::Task;
 use super::tolerance::energy_of;
 use crate::numerics::EnvelopeMatrix;
 use nalgebra::Vector3;
@@ -48,13 +48,13 @@ fn sample(sheet: &Sheet, region: &Region, light: &Vector3<f64>) -> Sampled {
     Sampled { u, v, light, bend }
 }
 
-/// Figures and isophotes of a sheet; `light` in the user's axes.
+/// Figures and isophotes of a sheet.
 pub(in super::super) fn diagnose(
     (sheet, energy): (&Sheet, &EnvelopeMatrix),
     region: &Region,
-    frame: Frame,
-    light: &Vector3<f64>,
+    task: &Task,
 ) -> (Fairness, Isophotes) {
+    let (frame, light) = (task.frame, &task.light);
     let inside = frame.axes.tr_mul(light);
     let sampled = sample(sheet, region, &inside);
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
@@ -66,7 +66,7 @@ pub(in super::super) fn diagnose(
     }
     let size = frame.size;
     let fairness = Fairness {
-        energy: energy_of(sheet, energy),
+        energy: energy_of(sheet, energy, task.freedom),
         gaussian_min: range[0][0] / (size * size),
         gaussian_max: range[0][1] / (size * size),
         mean_min: range[1][0] / size,

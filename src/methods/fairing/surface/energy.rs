@@ -36,15 +36,25 @@ impl Energy {
         }
     }
 
-    /// The isotropic energy of the given order.
-    pub(in super::super) fn isotropic(order: usize) -> Self {
+    /// The isotropic energy of the given order over a plane in which v is
+    /// stretched by `stretch`: sheets that are longer than wide vary faster
+    /// across than along.
+    pub(in super::super) fn isotropic(order: usize, stretch: f64) -> Self {
         let mut binomial = 1.0;
         let mut terms = Vec::new();
         for k in 0..=order {
-            terms.push((binomial, [order - k, k]));
+            let weight = binomial * stretch.powi(-2 * k as i32);
+            terms.push((weight, [order - k, k]));
             binomial *= (order - k) as f64 / (k + 1) as f64;
         }
         Energy { terms }
+    }
+
+    /// `∬ r²`: the mass of a field.
+    pub(in super::super) fn mass() -> Self {
+        Energy {
+            terms: vec![(1.0, [0, 0])],
+        }
     }
 
     /// Dimension of the polynomials that cost nothing: monomials uᵃvᵇ that

@@ -125,16 +125,17 @@ pub(in super::super) fn median_scale(lengths: &[f64], components: usize) -> f64 
     *median / MEDIANS[components.clamp(1, 3) - 1]
 }
 
-/// The energy that a task asks for, or the isotropic one of the given order.
+/// The energy that a task asks for, or the isotropic one of the given order
+/// and stretch.
 /// Parameters of the paper's run from 0 to 1: its derivatives by u are ours
 /// times the length of the domain.
 pub(in super::super) fn energy(
     asked: Option<super::request::EnergyWeights>,
-    order: usize,
+    (order, stretch): (usize, f64),
     domain: [[f64; 2]; 2],
 ) -> Energy {
     let Some(e) = asked else {
-        return Energy::isotropic(order);
+        return Energy::isotropic(order, stretch);
     };
     let [a, b] = domain.map(|[low, high]| (high - low).powi(2));
     Energy::of_paper([

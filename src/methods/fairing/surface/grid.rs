@@ -36,6 +36,26 @@ pub(in super::super) struct GridParameters {
 /// # Errors
 /// [`FitError::Numerical`] if the task is no grid or has no extent.
 pub(in super::super) fn parameters(task: &Task, degree: usize) -> Result<GridParameters, FitError> {
+    let Layout::Grid { cell, .. } = &task.layout else {
+        return Err(FitError::Numerical("no grid".into()));
+    };
+    let lines = mean_steps(task)?.map(|s| cumulative(&s));
+    let wanted = task.control_points;
+    let knots = |k: usize| {
+        line_knots(&lines[k], degree, wanted.map(|w| w[k]))
+            .map_err(|e| FitError::Numerical(e.to_string()))
+    };
+    let net = Net::new([knots(0)?, knots(1)?]);
+    let at = cell.iter().map(|[r, c]| [lines[0][*r], lines[1][*c]]).collect();
+    Ok(GridParameters { net, lines, at })
+}
+
+/// Steps between neighbouring rows, and between neighbouring columns: mean
+/// distances, made equal where they hardly differ.
+///
+/// # Errors
+/// [`FitError::Numerical`] if the task is no grid.
+pub(in super::super) fn mean_steps(task: &Task) -> Result<[Vec<f64>; 2], FitError> {
     let Layout::Grid { cell, size } = &task.layout else {
         return Err(FitError::Numerical("no grid".into()));
     };
@@ -45,15 +65,7 @@ pub(in super::super) fn parameters(task: &Task, degree: usize) -> Result<GridPar
     }
     let along_rows = steps(size[0], size[1], |r, c| table[r * size[1] + c]);
     let along_columns = steps(size[1], size[0], |c, r| table[r * size[1] + c]);
-    let lines = [along_rows, along_columns].map(|s| cumulative(&evened(s)));
-    let wanted = task.control_points;
-    let knots = |k: usize| {
-        line_knots(&lines[k], degree, wanted.map(|w| w[k]))
-            .map_err(|e| FitError::Numerical(e.to_string()))
-    };
-    let net = Net::new([knots(0)?, knots(1)?]);
-    let at = cell.iter().map(|[r, c]| [lines[0][*r], lines[1][*c]]).collect();
-    Ok(GridParameters { net, lines, at })
+    Ok([along_rows, along_columns].map(evened))
 }
 
 /// Mean distance from line i to line i + 1 over all crosswise pairs.

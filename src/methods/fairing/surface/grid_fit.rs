@@ -1,11 +1,12 @@
 //! The fit of a grid without a tolerance: parameters stay, all coordinates
 //! are fitted at once, order of the energy and stiffness from the data.
 
+use super::energy::Energy;
 use super::fit::{Fit, energy, robust, springs_to};
 use super::grid::parameters;
 use super::net::{Net, Sheet};
 use super::springs::{Normal, Springs, gather};
-use super::stiffness::{Chosen, Likelihood, choose, fit_with};
+use super::stiffness::{Chosen, Likelihood, choose, fit_with, log_pseudo_determinant};
 use super::task::{Layout, Task};
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
@@ -13,13 +14,22 @@ use crate::solver::Control;
 
 /// Degree of a grid's net: C⁴, so that no knot shows in isophotes or in the
 /// variation of curvature.
-const DEGREE: usize = 5;
+pub(in super::super) const DEGREE: usize = 5;
 /// Rows and columns that the orders 4 and 3 of the energy need: twice what
 /// determines the polynomials that they leave free.
 const ROWS_OF_ORDER: [(usize, usize); 2] = [(8, 4), (5, 3)];
 /// Weight of the energy where a coordinate must not change, against the
 /// balance of traces.
 const INTERPOLATION: f64 = 1e-9;
+
+/// Order of the isotropic energy for a table of this size.
+pub(in super::super) fn order(size: [usize; 2]) -> usize {
+    let shorter = size[0].min(size[1]);
+    ROWS_OF_ORDER
+        .iter()
+        .find(|(rows, _)| shorter >= *rows)
+        .map_or(2, |(_, order)| *order)
+}
 
 /// Fits a grid.
 ///
@@ -29,26 +39,17 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
     let Layout::Grid { size, .. } = &task.layout else {
         return Err(FitError::Numerical("no grid".into()));
     };
-    let shorter = size[0].min(size[1]);
-    let order = ROWS_OF_ORDER
-        .iter()
-        .find(|(rows, _)| shorter >= *rows)
-        .map_or(2, |(_, order)| *order);
+    let order = order(*size);
     let grid = parameters(task, DEGREE)?;
     let net = &grid.net;
-    let energy = energy(task.energy, order, net.domain());
     let free = task.freedom.iter().filter(|f| **f).count();
-    let model = Likelihood {
-        free: energy.free_dimension(DEGREE),
-        components: free as f64,
-    };
-    let matrix = energy.matrix(net);
     let springs = springs_to(&task.points, &grid.at, &task.weight);
+    let masked = free_only(&springs, task.freedom);
+    let (matrix, model) = stretched(task, (net, &masked), (order, free as f64), control)?;
     let (mut chosen, weight, noise) = if task.robust {
-        let r = robust(net, &springs, (&matrix, model), control)?;
+        let r = robust(net, &masked, (&matrix, model), control)?;
         (r.chosen, r.weight, r.scale)
     } else {
-        let masked = free_only(&springs, task.freedom);
         let chosen = choose(&gather(net, &masked), &matrix, model, (None, control))?;
         let noise = chosen.noise;
         (chosen, springs.weight.clone(), noise)
@@ -65,6 +66,60 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
         energy: matrix,
         model,
     })
+}
+
+/// Steps of the stretch, up or down, and most of them.
+const STRETCH: (f64, usize) = (2.0, 7);
+
+/// The energy with the stretch of greatest likelihood, by walking from 1. The
+/// user's own energy is left as it is.
+///
+/// # Errors
+/// As [`choose`].
+pub(in super::super) fn stretched<const D: usize>(
+    task: &Task,
+    (net, springs): (&Net, &Springs<D>),
+    (order, components): (usize, f64),
+    control: &dyn Control,
+) -> Result<(EnvelopeMatrix, Likelihood), FitError> {
+    let with = |stretch: f64| {
+        let energy = energy(task.energy, (order, stretch), net.domain());
+        let model = Likelihood {
+            free: energy.free_dimension(net.degree()),
+            components,
+        };
+        (energy.matrix(net), model)
+    };
+    let (mut best, model) = with(1.0);
+    if task.energy.is_some() {
+        return Ok((best, model));
+    }
+    let mass = Energy::mass().matrix(net);
+    let normal = gather(net, springs);
+    let criterion = |matrix: &EnvelopeMatrix| -> Result<f64, FitError> {
+        let chosen = choose(&normal, matrix, model, (None, control))?;
+        let prior = log_pseudo_determinant(matrix, &mass, model.free).unwrap_or(f64::NAN);
+        Ok(chosen.criterion - components * prior)
+    };
+    let mut least = criterion(&best)?;
+    for step in [STRETCH.0, 1.0 / STRETCH.0] {
+        let mut stretch = 1.0;
+        let mut moved = false;
+        for _ in 0..STRETCH.1 {
+            stretch *= step;
+            let (matrix, _) = with(stretch);
+            let value = criterion(&matrix)?;
+            // Not a number where a determinant failed: no improvement.
+            if value.is_nan() || value >= least {
+                break;
+            }
+            (best, least, moved) = (matrix, value, true);
+        }
+        if moved {
+            break;
+        }
+    }
+    Ok((best, model))
 }
 
 /// The same springs with the held coordinates at zero: they must not speak

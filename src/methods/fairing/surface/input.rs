@@ -47,7 +47,7 @@ pub(in super::super) fn issue(
 ///
 /// # Errors
 /// All issues found.
-pub(super) fn read(request: &Request) -> Result<Task, Vec<Issue>> {
+pub(in super::super) fn read(request: &Request) -> Result<Task, Vec<Issue>> {
     let mut issues = Vec::new();
     let (given, layout) = present(&request.points, &mut issues);
     options(request, &mut issues);

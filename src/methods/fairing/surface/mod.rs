@@ -20,13 +20,13 @@ pub(super) mod energy;
 pub(super) mod feet;
 pub(super) mod fit;
 pub(super) mod grid;
-mod grid_fit;
+pub(super) mod grid_fit;
 pub(super) mod input;
 mod interior_point;
 pub(super) mod net;
 pub mod outcome;
 mod paper;
-mod region;
+pub(super) mod region;
 mod report;
 pub mod request;
 mod scatter;
@@ -68,14 +68,28 @@ pub fn fit(request: &Request, control: &dyn Control) -> Result<Outcome, FitError
             (fit, bounded)
         }
     };
+    conclude(&task, (&fit, bounded), (parametrisation, &region), control)
+}
+
+/// Slips, figures, outcome.
+///
+/// # Errors
+/// [`FitError::Stopped`]; [`FitError::Numerical`] if the surface is not
+/// finite.
+pub(super) fn conclude(
+    task: &Task,
+    (fit, bounded): (&Fit, Option<Bounded>),
+    (parametrisation, region): (Parametrisation, &Region),
+    control: &dyn Control,
+) -> Result<Outcome, FitError> {
     control.progress("slips", 86.0);
-    let slips = slips::slips(&task, &fit, control)?;
+    let slips = slips::slips(task, fit, control)?;
     let found = report::Found {
-        task: &task,
-        fit: &fit,
+        task,
+        fit,
         bounded: bounded.as_ref(),
         parametrisation,
-        region: &region,
+        region,
         slips,
     };
     report::outcome(found, control)
@@ -102,7 +116,7 @@ fn region(task: &Task, fit: &Fit) -> Region {
 }
 
 /// The sheet within the tolerance, where there is one.
-fn bounded(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Option<Bounded>, FitError> {
+pub(super) fn bounded(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Option<Bounded>, FitError> {
     let Some(tolerance) = &task.tolerance else {
         return Ok(None);
     };

@@ -45,7 +45,7 @@ pub(super) fn fit(
     control: &dyn Control,
 ) -> Result<(Fit, Option<Bounded>), FitError> {
     let net = net(task, &start)?;
-    let term = energy(Some(task.energy.unwrap_or(BENDING)), 2, net.domain());
+    let term = energy(Some(task.energy.unwrap_or(BENDING)), (2, 1.0), net.domain());
     let matrix = term.matrix(&net);
     let model = Likelihood {
         free: term.free_dimension(DEGREE),

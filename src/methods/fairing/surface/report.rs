@@ -58,8 +58,8 @@ pub(super) fn outcome(found: Found, control: &dyn Control) -> Result<Outcome, Fi
     control.check()?;
     let springs = springs_to(&task.points, &fit.at, &fit.weight);
     let normal = gather(&fit.sheet.net, &springs);
-    let before = before(fit, &normal).unwrap_or_else(|| fit.sheet.clone());
-    let figures = |s: &Sheet| diagnose((s, &fit.energy), found.region, task.frame, &task.light);
+    let before = before(task, fit, &normal).unwrap_or_else(|| fit.sheet.clone());
+    let figures = |s: &Sheet| diagnose((s, &fit.energy), found.region, task);
     let (after, isophotes) = figures(sheet);
     let trade_off = trade_off(task, fit, &normal, control)?;
     let (outline, pieces) = found.region.outline();
@@ -132,11 +132,22 @@ fn moves(task: &Task, sheet: &Sheet, at: &[[f64; 2]]) -> Vec<Move> {
         .collect()
 }
 
-fn before(fit: &Fit, normal: &Normal<3>) -> Option<Sheet> {
+fn before(task: &Task, fit: &Fit, normal: &Normal<3>) -> Option<Sheet> {
     BEFORE
         .iter()
         .find_map(|f| fit_with(normal, &fit.energy, f * fit.lambda, fit.model))
-        .map(|c| Sheet::of_points(&fit.sheet.net, &c.control))
+        .map(|c| with_held(task, fit, &c.control))
+}
+
+/// The sheet of other control points, its held coordinates those of the fit.
+fn with_held(task: &Task, fit: &Fit, control: &[[f64; 3]]) -> Sheet {
+    let mut sheet = Sheet::of_points(&fit.sheet.net, control);
+    for (p, own) in sheet.control.iter_mut().zip(&fit.sheet.control) {
+        for d in (0..3).filter(|d| !task.freedom[*d]) {
+            p[d] = own[d];
+        }
+    }
+    sheet
 }
 
 fn trade_off(
@@ -155,12 +166,13 @@ fn trade_off(
         let Some(c) = fit_with(normal, &fit.energy, factor * fit.lambda, fit.model) else {
             continue;
         };
-        let sheet = Sheet::of_points(net, &c.control);
+        let sheet = with_held(task, fit, &c.control);
         let (mut largest, mut square, mut count) = (0.0_f64, 0.0, 0usize);
         for (p, at) in task.points.iter().zip(&fit.at).step_by(stride) {
             let t = sheet.tangents(*at);
             let offset = p - t.point;
-            let d = t.normal().map_or(offset.norm(), |n| n.dot(&offset).abs());
+            let across = t.normal().filter(|_| task.slides());
+            let d = across.map_or(offset.norm(), |n| n.dot(&offset).abs());
             largest = largest.max(d);
             square += d * d;
             count += 1;
@@ -169,7 +181,7 @@ fn trade_off(
             stiffness: factor * fit.lambda,
             move_max: largest * task.frame.size,
             move_rms: (square / count.max(1) as f64).sqrt() * task.frame.size,
-            energy: energy_of(&sheet, &fit.energy),
+            energy: energy_of(&sheet, &fit.energy, task.freedom),
         });
     }
     Ok(table)

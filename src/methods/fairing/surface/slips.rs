@@ -56,7 +56,7 @@ pub(super) fn slips(
         .map(|(p, at)| across(&sheet, p, *at, task.freedom))
         .collect();
     let lengths: Vec<f64> = residual.iter().map(|r| r.0.abs()).collect();
-    let sigma = median_scale(&lengths, 1).max(ROUNDING);
+    let sigma = scale(&lengths).max(ROUNDING);
     let mut weighted = springs;
     weighted.weight = weight;
     let suspects: Vec<usize> = (0..lengths.len())
@@ -86,6 +86,22 @@ pub(super) fn slips(
     slips.truncate(MOST);
     Ok(slips)
 }
+
+/// σ that both the middle and the shoulders of the residuals agree with: the
+/// noise of real surveys has longer tails than the normal distribution, and
+/// its tails are not slips. Up to 8 % of slips do not reach the shoulder.
+fn scale(lengths: &[f64]) -> f64 {
+    let mut sorted = lengths.to_vec();
+    if sorted.is_empty() {
+        return 0.0;
+    }
+    let place = (SHOULDER.0 * (sorted.len() - 1) as f64) as usize;
+    let (_, shoulder, _) = sorted.select_nth_unstable_by(place, f64::total_cmp);
+    median_scale(lengths, 1).max(*shoulder / SHOULDER.1)
+}
+
+/// A quantile of |x| of the standard normal distribution.
+const SHOULDER: (f64, f64) = (0.90, 1.644_854);
 
 fn slip(task: &Task, i: usize, (off, sigmas, confidence): (Vector3<f64>, f64, f64)) -> Slip {
     let cell = match &task.layout {

@@ -78,11 +78,6 @@ impl Cells {
         Cells { order, chunks }
     }
 
-    /// Indices of the points, cell by cell.
-    pub(in super::super) fn order(&self) -> &[u32] {
-        &self.order
-    }
-
     /// Chunks of point indices, each within one cell.
     pub(in super::super) fn chunks(&self) -> impl IndexedParallelIterator<Item = &[u32]> {
         self.chunks.par_iter().map(|[a, b]| &self.order[*a..*b])

@@ -157,6 +157,24 @@ pub(in super::super) fn choose<const D: usize>(
         .ok_or_else(|| FitError::Numerical("no spring stiffness gives a solvable system".into()))
 }
 
+/// `ln det⁺ P`, up to a constant of the net: what the criterion lacks when
+/// energies are compared that leave the same polynomials free. With the mass
+/// matrix M, `ln det(P + εM) − m ln ε` tends to it for small ε.
+pub(in super::super) fn log_pseudo_determinant(
+    energy: &EnvelopeMatrix,
+    mass: &EnvelopeMatrix,
+    free: usize,
+) -> Option<f64> {
+    let trace = |m: &EnvelopeMatrix| m.diagonal().sum::<f64>();
+    let small = SMALL * trace(energy) / trace(mass).max(f64::MIN_POSITIVE);
+    let factor = blend(energy, small, mass).factor().ok()?;
+    let determinant: f64 = factor.pivots().map(f64::ln).sum();
+    Some(determinant - free as f64 * small.ln())
+}
+
+/// ε of [`log_pseudo_determinant`] against the balance of traces.
+const SMALL: f64 = 1e-11;
+
 struct Search<'a, const D: usize, F: Fn(f64) -> Option<Chosen<D>>> {
     evaluate: F,
     best: Option<Chosen<D>>,

@@ -28,6 +28,12 @@ pub(in super::super) struct Bounds<'a> {
     pub(in super::super) axes: Option<[bool; 3]>,
 }
 
+impl Bounds<'_> {
+    fn freedom(&self) -> [bool; 3] {
+        self.axes.unwrap_or([true; 3])
+    }
+}
+
 /// A sheet that was fitted within bounds.
 #[derive(Debug, Clone)]
 pub(in super::super) struct Bounded {
@@ -91,7 +97,7 @@ pub(in super::super) fn within(
         for (n, r) in narrow.iter_mut().zip(&ratio) {
             *n *= (1.0 / r).min(1.0);
         }
-        let value = energy_of(&sheet, energy);
+        let value = energy_of(&sheet, energy, bounds.freedom());
         let trial = Bounded {
             sheet: sheet.clone(),
             at: at.clone(),
@@ -127,9 +133,14 @@ fn unmet((sheet, at): (&Sheet, &[[f64; 2]]), bounds: Bounds) -> Bounded {
     }
 }
 
-/// `Σ cᵀPc` over the three coordinates.
-pub(in super::super) fn energy_of(sheet: &Sheet, energy: &EnvelopeMatrix) -> f64 {
+/// `Σ cᵀPc` over the coordinates that are free.
+pub(in super::super) fn energy_of(
+    sheet: &Sheet,
+    energy: &EnvelopeMatrix,
+    freedom: [bool; 3],
+) -> f64 {
     (0..3)
+        .filter(|d| freedom[*d])
         .map(|d| {
             let c: Vec<f64> = sheet.control.iter().map(|p| p[d]).collect();
             let image = energy.multiply(&c);
@@ -205,7 +216,7 @@ fn programme(
         looks: looks.iter().zip(&reach).map(|(l, e)| l.direction / *e).collect(),
         offset: looks.iter().zip(&reach).map(|(l, e)| l.along / e).collect(),
     };
-    let objective = objective(sheet, &directions, energy);
+    let objective = objective(sheet, &directions, (energy, bounds.freedom()));
     let optimum = interior_point::minimise(&objective, &strips, control)?;
     if !optimum.met {
         return Ok(None);
@@ -239,14 +250,14 @@ fn control_directions(sheet: &Sheet, axes: Option<[bool; 3]>) -> Vec<Vector3<f64
 fn objective(
     sheet: &Sheet,
     directions: &[Vector3<f64>],
-    energy: &EnvelopeMatrix,
+    (energy, freedom): (&EnvelopeMatrix, [bool; 3]),
 ) -> Objective {
     let diagonal = energy.diagonal().fold(0.0, f64::max);
-    let scale = 1.0 / energy_of(sheet, energy).max(1e-16 * diagonal + f64::MIN_POSITIVE);
+    let scale = 1.0 / energy_of(sheet, energy, freedom).max(1e-16 * diagonal + f64::MIN_POSITIVE);
     let mut hessian = energy.clone();
     hessian.scale_entries(|i, j, v| v * scale * directions[i].dot(&directions[j]));
     let mut gradient = vec![0.0; directions.len()];
-    for d in 0..3 {
+    for d in (0..3).filter(|d| freedom[*d]) {
         let c: Vec<f64> = sheet.control.iter().map(|p| p[d]).collect();
         for ((g, p), n) in gradient.iter_mut().zip(energy.multiply(&c)).zip(directions) {
             *g += scale * p * n[d];

@@ -39,7 +39,7 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
     let mut sample = thinned(&all, SAMPLE);
     let order = levels::order(all.at.len());
     let term = |net: &Net| {
-        let energy = energy(task.energy, order, net.domain());
+        let energy = energy(task.energy, (order, 1.0), net.domain());
         let model = Likelihood {
             free: energy.free_dimension(levels::DEGREE),
             components: 1.0,
@@ -101,7 +101,7 @@ fn finish(
 ) -> Result<Fit, FitError> {
     let net = level.net;
     let order = levels::order(all.at.len());
-    let matrix = energy(task.energy, order, net.domain()).matrix(&net);
+    let matrix = energy(task.energy, (order, 1.0), net.domain()).matrix(&net);
     let mut weight = all.weight.clone();
     let chosen = if sample.at.len() == all.at.len() {
         weight = sample.weight;

@@ -151,7 +151,7 @@ fn on_net(
     cloud: &Cloud,
     (near, control): (Option<f64>, &dyn Control),
 ) -> Result<Level, FitError> {
-    let term = energy(task.energy, levels::order(task.points.len()), net.domain());
+    let term = energy(task.energy, (levels::order(task.points.len()), 1.0), net.domain());
     let model = Likelihood {
         free: term.free_dimension(levels::DEGREE),
         components: 1.0,

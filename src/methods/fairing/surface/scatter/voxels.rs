@@ -85,20 +85,21 @@ pub(in super::super) fn nodes(points: &[Vector3<f64>]) -> Nodes {
     let wanted = (sample.len() / POINTS_A_NODE).clamp(8, NODES) as f64;
     // A sheet of unit size in voxels of side 1/k fills about k² of them.
     let mut side = 1.0 / wanted.sqrt();
-    let mut keys = Vec::new();
-    for _ in 0..ROUNDS {
-        keys = sample.iter().map(|p| key(p, side)).collect::<Vec<_>>();
+    let occupied = |side: f64| {
+        let mut keys: Vec<[i64; 3]> = sample.iter().map(|p| key(p, side)).collect();
         keys.sort_unstable();
         keys.dedup();
+        keys
+    };
+    let mut keys = occupied(side);
+    for _ in 0..ROUNDS {
         let ratio = keys.len() as f64 / wanted;
         if (0.8..1.25).contains(&ratio) {
             break;
         }
         side *= ratio.sqrt();
+        keys = occupied(side);
     }
-    keys = sample.iter().map(|p| key(p, side)).collect();
-    keys.sort_unstable();
-    keys.dedup();
     let mut place = vec![Vector3::zeros(); keys.len()];
     let mut count = vec![0; keys.len()];
     for p in &sample {
