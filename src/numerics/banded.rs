@@ -3,6 +3,7 @@
 //!
 //! * [`EnvelopeMatrix`] for symmetric positive definite normal equations whose
 //!   rows reach back by different lengths (band, arrow, any variable band);
+//! * [`TiledFactor`] for the same on wide bands, as surfaces have them;
 //! * [`BandedMatrix`] for the small unsymmetric bands of interpolation.
 //!
 //! Limits: neither reorders. The caller numbers the unknowns so that the band
@@ -15,6 +16,8 @@
 
 mod envelope;
 mod lu;
+mod tiled;
 
 pub use envelope::{EnvelopeFactor, EnvelopeMatrix, NotPositiveDefinite};
 pub use lu::{BandedLu, BandedMatrix, Singular};
+pub use tiled::TiledFactor;

@@ -5,6 +5,6 @@ pub mod banded;
 pub mod quadrature;
 
 pub use banded::{
-    BandedLu, BandedMatrix, EnvelopeFactor, EnvelopeMatrix, NotPositiveDefinite, Singular,
+    BandedLu, BandedMatrix, EnvelopeFactor, EnvelopeMatrix, NotPositiveDefinite, Singular, TiledFactor,
 };
 pub use quadrature::GaussLegendre;

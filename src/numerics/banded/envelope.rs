@@ -99,6 +99,13 @@ impl EnvelopeMatrix {
         self.shape.first[i]
     }
 
+    /// Row `i` of the lower triangle: its first stored column and its values
+    /// from there to the diagonal.
+    #[must_use]
+    pub fn row(&self, i: usize) -> (usize, &[f64]) {
+        (self.shape.first[i], self.shape.row(&self.values, i))
+    }
+
     /// Sets every entry to zero and keeps the envelope.
     pub fn clear(&mut self) {
         self.values.fill(0.0);

@@ -67,7 +67,8 @@ pub(in super::super) fn robust<const D: usize>(
             let t = (r / (CUT * unit)).min(1.0);
             *w = given * (1.0 - t * t).powi(2);
         }
-        chosen = choose(&gather(net, &now), energy, model, (None, control))?;
+        let near = Some(chosen.lambda);
+        chosen = choose(&gather(net, &now), energy, model, (near, control))?;
     }
     Ok(Robust {
         chosen,

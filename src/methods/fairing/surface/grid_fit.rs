@@ -96,19 +96,20 @@ pub(in super::super) fn stretched<const D: usize>(
     }
     let mass = Energy::mass().matrix(net);
     let normal = gather(net, springs);
-    let criterion = |matrix: &EnvelopeMatrix| -> Result<f64, FitError> {
-        let chosen = choose(&normal, matrix, model, (None, control))?;
+    let criterion = |matrix: &EnvelopeMatrix, near: Option<f64>| -> Result<_, FitError> {
+        let chosen = choose(&normal, matrix, model, (near, control))?;
         let prior = log_pseudo_determinant(matrix, &mass, model.free).unwrap_or(f64::NAN);
-        Ok(chosen.criterion - components * prior)
+        Ok((chosen.criterion - components * prior, chosen.lambda))
     };
-    let mut least = criterion(&best)?;
+    let (mut least, first) = criterion(&best, None)?;
     for step in [STRETCH.0, 1.0 / STRETCH.0] {
         let mut stretch = 1.0;
-        let mut moved = false;
+        let (mut moved, mut near) = (false, first);
         for _ in 0..STRETCH.1 {
             stretch *= step;
             let (matrix, _) = with(stretch);
-            let value = criterion(&matrix)?;
+            let (value, lambda) = criterion(&matrix, Some(near))?;
+            near = lambda;
             // Not a number where a determinant failed: no improvement.
             if value.is_nan() || value >= least {
                 break;

@@ -162,7 +162,7 @@ fn newton(objective: &Objective, strips: &Strips, (x, now): (&State, &Residuals)
     for i in 0..matrix.order() {
         matrix.add_to_diagonal(i, shift);
     }
-    let factor = matrix.factor().ok()?;
+    let factor = stiffness::Factor::new(&matrix)?;
     let direction = |target: &[Vec<f64>; 2]| -> Option<Step> {
         let t = [0, 1].map(|k| -> Vec<f64> {
             (0..n)

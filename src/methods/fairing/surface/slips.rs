@@ -10,10 +10,9 @@ use super::fit::{Fit, median_scale, robust, springs_to};
 use super::net::Sheet;
 use super::outcome::Slip;
 use super::springs::gather;
-use super::stiffness::fit_with;
+use super::stiffness::{Factor, fit_with};
 use super::task::{Layout, Task};
 use crate::methods::FitError;
-use crate::numerics::EnvelopeFactor;
 use crate::solver::Control;
 use nalgebra::Vector3;
 
@@ -136,7 +135,7 @@ fn across(
 }
 
 /// `bᵀM⁻¹b` at a place.
-fn leverage(sheet: &Sheet, at: [f64; 2], factor: &EnvelopeFactor) -> f64 {
+fn leverage(sheet: &Sheet, at: [f64; 2], factor: &Factor) -> f64 {
     let [ju, jv] = sheet.net.jets::<1>(at);
     let mut row = vec![0.0; sheet.net.len()];
     for (a, x) in ju.values().iter().enumerate() {

@@ -13,7 +13,7 @@
 
 use super::springs::Normal;
 use crate::methods::FitError;
-use crate::numerics::{EnvelopeFactor, EnvelopeMatrix};
+use crate::numerics::{EnvelopeFactor, EnvelopeMatrix, TiledFactor};
 use crate::solver::Control;
 
 /// What V needs besides the matrices.
@@ -39,17 +39,60 @@ pub(in super::super) struct Chosen<const D: usize> {
     /// and energy).
     pub(in super::super) criterion: f64,
     /// The factor of A + λP.
-    pub(in super::super) factor: EnvelopeFactor,
+    pub(in super::super) factor: Factor,
 }
 
 /// Decades below and above the balance of the traces that are searched.
 const DECADES: [f64; 2] = [-11.0, 9.0];
 /// Step of the first walk, decades.
 const WALK: f64 = 1.0;
-/// Golden sections after it: to 0.05 of a decade, far finer than matters.
-const SECTIONS: usize = 6;
+/// Parabolas after it: to about 0.05 of a decade, far finer than matters.
+const PARABOLAS: usize = 3;
+/// Decades that need not be told apart.
+const CLOSE: f64 = 0.03;
 /// Share of the data's own square below which a residual is rounding.
 const ROUNDING: f64 = 1e-15;
+
+/// A Cholesky factor in the form that suits its bandwidth.
+#[derive(Debug, Clone)]
+pub(in super::super) enum Factor {
+    /// Narrow bands.
+    Plain(EnvelopeFactor),
+    /// Wide bands.
+    Tiled(TiledFactor),
+}
+
+/// Half bandwidth from which tiles are faster.
+const WIDE: usize = 128;
+
+impl Factor {
+    /// Factors a band matrix; `None` if it is not positive definite.
+    pub(in super::super) fn new(matrix: &EnvelopeMatrix) -> Option<Self> {
+        let last = matrix.order().saturating_sub(1);
+        let width = last - matrix.first_column(last);
+        if width < WIDE {
+            matrix.factor().ok().map(Factor::Plain)
+        } else {
+            TiledFactor::new(matrix, width).ok().map(Factor::Tiled)
+        }
+    }
+
+    /// Replaces b by the solution of `A x = b`.
+    pub(in super::super) fn solve_in_place(&self, b: &mut [f64]) {
+        match self {
+            Factor::Plain(f) => f.solve_in_place(b),
+            Factor::Tiled(f) => f.solve_in_place(b),
+        }
+    }
+
+    /// `ln det A`.
+    pub(in super::super) fn log_determinant(&self) -> f64 {
+        match self {
+            Factor::Plain(f) => f.pivots().map(f64::ln).sum(),
+            Factor::Tiled(f) => f.pivots().map(f64::ln).sum(),
+        }
+    }
+}
 
 /// `a + λ b` for matrices of the same envelope.
 pub(in super::super) fn blend(
@@ -64,7 +107,7 @@ pub(in super::super) fn blend(
 
 /// Solves for all fields.
 pub(in super::super) fn solve<const D: usize>(
-    factor: &EnvelopeFactor,
+    factor: &Factor,
     rhs: &[[f64; D]],
 ) -> Vec<[f64; D]> {
     let mut control = rhs.to_vec();
@@ -88,7 +131,7 @@ pub(in super::super) fn fit_with<const D: usize>(
     lambda: f64,
     model: Likelihood,
 ) -> Option<Chosen<D>> {
-    let factor = blend(&normal.matrix, lambda, energy).factor().ok()?;
+    let factor = Factor::new(&blend(&normal.matrix, lambda, energy))?;
     let control = solve(&factor, &normal.rhs);
     let explained: f64 = control
         .iter()
@@ -99,7 +142,7 @@ pub(in super::super) fn fit_with<const D: usize>(
     let left = (normal.square - explained).max(ROUNDING * normal.square + f64::MIN_POSITIVE);
     let order = normal.rhs.len();
     let degrees = normal.points.saturating_sub(model.free).max(1) as f64;
-    let determinant: f64 = factor.pivots().map(f64::ln).sum();
+    let determinant = factor.log_determinant();
     let rank = order.saturating_sub(model.free) as f64;
     let criterion =
         model.components * (degrees * left.ln() + determinant - rank * lambda.ln());
@@ -133,6 +176,7 @@ pub(in super::super) fn choose<const D: usize>(
     let mut search = Search {
         evaluate: |decade: f64| fit_with(normal, energy, 10f64.powf(decade), model),
         best: None,
+        seen: Vec::new(),
         control,
     };
     search.try_at(start)?;
@@ -151,7 +195,7 @@ pub(in super::super) fn choose<const D: usize>(
             break;
         }
     }
-    search.golden(at - WALK, at + WALK)?;
+    search.parabolas(at)?;
     search
         .best
         .ok_or_else(|| FitError::Numerical("no spring stiffness gives a solvable system".into()))
@@ -167,9 +211,8 @@ pub(in super::super) fn log_pseudo_determinant(
 ) -> Option<f64> {
     let trace = |m: &EnvelopeMatrix| m.diagonal().sum::<f64>();
     let small = SMALL * trace(energy) / trace(mass).max(f64::MIN_POSITIVE);
-    let factor = blend(energy, small, mass).factor().ok()?;
-    let determinant: f64 = factor.pivots().map(f64::ln).sum();
-    Some(determinant - free as f64 * small.ln())
+    let factor = Factor::new(&blend(energy, small, mass))?;
+    Some(factor.log_determinant() - free as f64 * small.ln())
 }
 
 /// ε of [`log_pseudo_determinant`] against the balance of traces.
@@ -178,6 +221,7 @@ const SMALL: f64 = 1e-11;
 struct Search<'a, const D: usize, F: Fn(f64) -> Option<Chosen<D>>> {
     evaluate: F,
     best: Option<Chosen<D>>,
+    seen: Vec<(f64, f64)>,
     control: &'a dyn Control,
 }
 
@@ -188,6 +232,7 @@ impl<const D: usize, F: Fn(f64) -> Option<Chosen<D>>> Search<'_, D, F> {
             return Ok((f64::INFINITY, false));
         };
         let value = trial.criterion;
+        self.seen.push((decade, value));
         let better = self.best.as_ref().is_none_or(|b| value < b.criterion);
         if better {
             self.best = Some(trial);
@@ -200,22 +245,40 @@ impl<const D: usize, F: Fn(f64) -> Option<Chosen<D>>> Search<'_, D, F> {
         Ok(self.value(decade)?.1)
     }
 
-    fn golden(&mut self, low: f64, high: f64) -> Result<(), FitError> {
-        let ratio = 0.5 * (5f64.sqrt() - 1.0);
-        let (mut a, mut b) = (low, high);
-        let (mut c, mut d) = (b - ratio * (b - a), a + ratio * (b - a));
-        let (mut fc, mut fd) = (self.value(c)?.0, self.value(d)?.0);
-        for _ in 0..SECTIONS {
-            if fc < fd {
-                (b, d, fd) = (d, c, fc);
-                c = b - ratio * (b - a);
-                fc = self.value(c)?.0;
-            } else {
-                (a, c, fc) = (c, d, fd);
-                d = a + ratio * (b - a);
-                fd = self.value(d)?.0;
+    /// Vertices of parabolas through three trials about the least one.
+    fn parabolas(&mut self, middle: f64) -> Result<(), FitError> {
+        let mut trials = Vec::new();
+        for decade in [middle - WALK, middle, middle + WALK] {
+            let known = self.seen.iter().find(|(d, _)| *d == decade).copied();
+            trials.push(match known {
+                Some(trial) => trial,
+                None => (decade, self.value(decade)?.0),
+            });
+        }
+        for _ in 0..PARABOLAS {
+            let Some(vertex) = vertex(&trials) else { break };
+            if trials.iter().any(|(d, _)| (d - vertex).abs() < CLOSE) {
+                break;
             }
+            trials.push((vertex, self.value(vertex)?.0));
+            trials.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let least = (1..trials.len() - 1)
+                .min_by(|a, b| trials[*a].1.total_cmp(&trials[*b].1))
+                .unwrap_or(1);
+            trials = trials[least - 1..=least + 1].to_vec();
         }
         Ok(())
     }
+}
+
+/// The vertex of the parabola through three trials in order, where it opens
+/// upwards and lies between them.
+fn vertex(trials: &[(f64, f64)]) -> Option<f64> {
+    let [(a, fa), (b, fb), (c, fc)] = trials else {
+        return None;
+    };
+    let (left, right) = ((fb - fa) / (b - a), (fc - fb) / (c - b));
+    let bend = (right - left) / (c - a);
+    let place = 0.5 * (a + b) - 0.5 * left / bend;
+    (bend > 0.0 && place > *a && place < *c).then_some(place)
 }

@@ -10,7 +10,7 @@ use super::super::net::{Net, Sheet};
 use super::super::springs::{Springs, gather};
 use super::super::stiffness::{Chosen, Likelihood, choose, fit_with};
 use super::super::task::Task;
-use super::levels::{self, GAIN, LEVELS, SAMPLE};
+use super::levels::{self, LEVELS, SAMPLE};
 use crate::methods::FitError;
 use crate::solver::Control;
 use rayon::prelude::*;
@@ -46,6 +46,7 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
         };
         (energy.matrix(net), model)
     };
+    let least = levels::least_gain(all.at.len());
     let mut best: Option<Level> = None;
     for spans in LEVELS {
         let net = levels::net(domain, spans, task.control_points)?;
@@ -66,7 +67,7 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
             .as_ref()
             .map_or(1.0, |b| 1.0 - (chosen.noise / b.chosen.noise).powi(2));
         let first = best.is_none();
-        if gain >= GAIN {
+        if gain >= least {
             best = Some(Level { net, chosen });
         }
         if first && task.slides() {
@@ -76,7 +77,7 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
                 level_out(&sheet, &mut sample);
             }
         }
-        if gain < GAIN || task.control_points.is_some() {
+        if gain < least || task.control_points.is_some() {
             break;
         }
     }

@@ -15,9 +15,17 @@ const FEWEST_SPANS: usize = 3;
 pub(in super::super) const SAMPLE: usize = 30_000;
 /// Points a control point that make the next level worth a look.
 const POINTS_A_CONTROL: f64 = 0.7;
-/// A level that lowers the noise (a variance) by less than this has nothing
-/// to add.
-pub(in super::super) const GAIN: f64 = 0.01;
+/// A level is worth its cost when it lowers the variance of the noise by more
+/// than this many points' worth of it (their likelihood ratio) ...
+const WORTH: f64 = 20.0;
+/// ... within these shares: below, the sample cannot tell; above, anybody can.
+const SHARES: [f64; 2] = [3e-4, 1e-2];
+
+/// Least gain, as share of the noise's variance, for which a finer level is
+/// taken.
+pub(in super::super) fn least_gain(points: usize) -> f64 {
+    (WORTH / points.max(1) as f64).clamp(SHARES[0], SHARES[1])
+}
 /// The net goes past the outermost point by this share of the longer side.
 const PAST: f64 = 0.005;
 

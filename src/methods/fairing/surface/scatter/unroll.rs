@@ -13,7 +13,7 @@ use super::super::springs::gather;
 use super::super::stiffness::{Chosen, Likelihood, choose, fit_with};
 use super::super::task::Task;
 use super::geodesics::flat_map;
-use super::levels::{self, GAIN, LEVELS, SAMPLE};
+use super::levels::{self, LEVELS, SAMPLE};
 use super::voxels::Nodes;
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
@@ -71,7 +71,7 @@ pub(in super::super) fn fit(
         )])
     })?;
     control.check()?;
-    let domain = levels::domain(&map);
+    let domain = levels::domain(&map).map(|[a, b]| [a - nodes.side(), b + nodes.side()]);
     let mut cloud = Cloud {
         points: nodes.place.clone(),
         at: map.clone(),
@@ -97,7 +97,7 @@ pub(in super::super) fn fit(
             refine(task, &mut finer, &mut sample, (true, control))?;
         }
         let gain = 1.0 - (finer.chosen.noise / level.chosen.noise).powi(2);
-        if gain < GAIN {
+        if gain < levels::least_gain(task.points.len()) {
             break;
         }
         level = finer;
