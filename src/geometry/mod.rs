@@ -14,8 +14,9 @@ mod tolerance;
 pub use arc_length::ArcLength;
 pub use bounding_box::BoundingBox;
 pub use bspline::{
-    Axis, BSplineCurve, BSplineSurface, BasisJet, CurveJet, Knots, MAX_DEGREE, Parametrization, SplineError,
-    SurfaceJet, basis_jet, complete_cubic, gram, interpolate, interpolate_grid, interpolation_parameters, join_c0,
+    Axis, BSplineCurve, BSplineSurface, BasisJet, CurveJet, Knots, MAX_DEGREE, Parametrization,
+    SplineError, SurfaceJet, basis_jet, complete_cubic, gram, interpolate, interpolate_grid,
+    interpolation_parameters, join_c0,
 };
 pub use closest::{Closest, CurveIndex};
 pub use distance::{CurveDistance, directed_distance, directed_distance_between};

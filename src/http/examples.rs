@@ -49,6 +49,14 @@ examples! {
     "wigley", "hull_plates": "The Wigley hull, a round form that no plate fits: the verdict is outside_limits, \
                with the reason.";
     "punt", "hull_plates": "The flat bottom of a punt: a plane.";
+    "frame", "fairing": "A frame lifted from a drawing to 5 mm, one point of it mis-read: the fair \
+                         frame, every move, and the slip.";
+    "half_circle", "fairing": "13 points of a half circle, passed through exactly: the curvature \
+                               of a circle.";
+    "gunnerus_offsets", "fairing": "Half-breadths of R/V Gunnerus, 17 stations and 15 waterlines, \
+                                    faired as one surface.";
+    "bilge_grid", "fairing": "A measured grid of a side with two cells missing, faired within \
+                              15 mm.";
 }
 
 /// The examples there are.

@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn unbuilt_methods_are_known() {
-        let error = read_job(br#"{"method":"fairing"}"#).unwrap_err();
+        let error = read_job(br#"{"method":"cone_spline"}"#).unwrap_err();
         assert_eq!(error.code, Code::MethodNotAvailable);
     }
 }

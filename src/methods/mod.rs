@@ -1,6 +1,7 @@
 //! The fitting methods. Each is a pure, synchronous function of a request and
 //! a [`Control`]; none knows HTTP, the wire or the clock.
 
+pub mod fairing;
 pub mod hull_plates;
 
 pub use crate::solver::{Control, Stop};

@@ -5,6 +5,7 @@ pub mod banded;
 pub mod quadrature;
 
 pub use banded::{
-    BandedLu, BandedMatrix, EnvelopeFactor, EnvelopeMatrix, NotPositiveDefinite, Singular, TiledFactor,
+    BandedLu, BandedMatrix, EnvelopeFactor, EnvelopeMatrix, NotPositiveDefinite, Singular,
+    TiledFactor,
 };
 pub use quadrature::GaussLegendre;

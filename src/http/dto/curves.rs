@@ -11,7 +11,7 @@ use utoipa::{PartialSchema, ToSchema};
 
 /// The largest coordinate in the smallest unit: 1e6 m in millimetres. The
 /// bound for the job's own unit is checked with the unit known.
-const LARGEST_COORDINATE: f64 = 1e9;
+pub(super) const LARGEST_COORDINATE: f64 = 1e9;
 
 /// A point as three coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,6 @@
 //! The answer of `…/diagnostics`.
 
+use super::fairing::FairingDiagnostics;
 use super::hull_plates::HullPlatesDiagnostics;
 use super::job::{JobError, StatusWord, VerdictWord};
 use crate::jobs;
@@ -14,6 +15,8 @@ use uuid::Uuid;
 pub enum Figures {
     /// Of `hull_plates`.
     HullPlates(HullPlatesDiagnostics),
+    /// Of `fairing`.
+    Fairing(FairingDiagnostics),
 }
 
 /// What is known about how a job went, failed jobs included.

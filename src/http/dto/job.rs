@@ -1,5 +1,6 @@
 //! A job on the wire: the request as it is posted, the answer as it is told.
 
+use super::fairing::{FairingInput, FairingOptions};
 use super::hull_plates::{HullPlatesInput, HullPlatesOptions};
 use crate::http::problem::FieldError;
 use crate::jobs;
@@ -20,6 +21,8 @@ pub const DEFAULT_BUDGET_S: f64 = 60.0;
 pub enum JobRequest {
     /// Developable plates between a hull's profile curves.
     HullPlates(HullPlatesJob),
+    /// The fairest curve or surface within a tolerance of measured points.
+    Fairing(FairingJob),
 }
 
 macro_rules! job_of_a_method {
@@ -66,6 +69,15 @@ job_of_a_method!(
     HullPlatesInput,
     HullPlatesOptions,
     "A job for developable plates between a hull's profile curves."
+);
+job_of_a_method!(
+    FairingJob,
+    FairingMethod,
+    "fairing",
+    Fairing,
+    FairingInput,
+    FairingOptions,
+    "A job for the fairest curve or surface within a tolerance of measured points."
 );
 
 /// What a job may use.

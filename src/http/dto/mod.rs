@@ -4,6 +4,7 @@
 
 pub mod curves;
 pub mod diagnostics;
+pub mod fairing;
 pub mod hull_plates;
 pub mod job;
 pub mod result;

@@ -1,5 +1,6 @@
 //! What the results of all methods have in common.
 
+use super::fairing::FairingResult;
 use super::hull_plates::HullPlatesResult;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -10,6 +11,8 @@ use utoipa::ToSchema;
 pub enum ResultDocument {
     /// Of `hull_plates`.
     HullPlates(HullPlatesResult),
+    /// Of `fairing`.
+    Fairing(FairingResult),
 }
 
 /// What every result says in words, read back from any of them.

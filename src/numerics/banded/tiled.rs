@@ -41,7 +41,10 @@ impl TiledFactor {
     ///
     /// # Panics
     /// If a row reaches further: a mistake of the programme.
-    pub fn new(matrix: &EnvelopeMatrix, half_bandwidth: usize) -> Result<Self, NotPositiveDefinite> {
+    pub fn new(
+        matrix: &EnvelopeMatrix,
+        half_bandwidth: usize,
+    ) -> Result<Self, NotPositiveDefinite> {
         let order = matrix.order();
         let columns = order.div_ceil(TILE);
         let reach = (half_bandwidth + TILE - 1) / TILE + 1;
@@ -100,7 +103,14 @@ impl TiledFactor {
                 MatRef::from_column_major_slice(&below[r * AREA..(r + 1) * AREA], TILE, TILE)
             };
             let target = MatMut::from_column_major_slice_mut(tile, TILE, TILE);
-            matmul(target, Accum::Add, part(i + j), part(j).transpose(), -1.0, Par::Seq);
+            matmul(
+                target,
+                Accum::Add,
+                part(i + j),
+                part(j).transpose(),
+                -1.0,
+                Par::Seq,
+            );
         };
         let touched = &mut tail[..reach * width * AREA];
         if reach >= PARALLEL {
@@ -199,7 +209,12 @@ fn axpy(s: f64, x: &[f64], y: &mut [f64]) {
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut lanes = [0.0; 4];
     let (ca, cb) = (a.chunks_exact(4), b.chunks_exact(4));
-    let tail: f64 = ca.remainder().iter().zip(cb.remainder()).map(|(x, y)| x * y).sum();
+    let tail: f64 = ca
+        .remainder()
+        .iter()
+        .zip(cb.remainder())
+        .map(|(x, y)| x * y)
+        .sum();
     for (x, y) in ca.zip(cb) {
         for l in 0..4 {
             lanes[l] += x[l] * y[l];

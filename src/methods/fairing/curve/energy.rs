@@ -204,7 +204,9 @@ impl Energy {
         let reach = REACH * space.degree();
         for (k, weight) in self.relief.iter_mut().enumerate() {
             let near = &bent[k.saturating_sub(reach)..(k + reach + 1).min(bent.len())];
-            let [length, turn] = near.iter().fold([0.0; 2], |s, n| [s[0] + n[0], s[1] + n[1]]);
+            let [length, turn] = near
+                .iter()
+                .fold([0.0; 2], |s, n| [s[0] + n[0], s[1] + n[1]]);
             *weight = relief(turn / length.max(f64::MIN_POSITIVE), gentle);
         }
     }
@@ -262,7 +264,12 @@ impl Energy {
             }
             let (uneven, by) = unevenness(&d);
             let strength = stiffness[1] * EVEN_SPEED * node.weight;
-            block.push(&node.basis, &[by[0], by[1], Vector::zeros()], uneven, strength);
+            block.push(
+                &node.basis,
+                &[by[0], by[1], Vector::zeros()],
+                uneven,
+                strength,
+            );
             block.scatter(space, model);
         }
     }

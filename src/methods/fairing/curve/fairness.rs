@@ -112,7 +112,11 @@ impl<'a> Gauge<'a> {
         Fairness {
             curvature_variation: variation,
             bending,
-            extrema: if bent { extrema(&curvatures, PROMINENT * range) } else { 0 },
+            extrema: if bent {
+                extrema(&curvatures, PROMINENT * range)
+            } else {
+                0
+            },
             inflections: if bent && self.plane.is_some() {
                 sign_changes(&curvatures, SIGNLESS * amount)
             } else {

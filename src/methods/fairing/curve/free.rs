@@ -85,7 +85,7 @@ pub(super) fn settle<const D: usize>(
         holds.weigh(&shape.space, next.stiffness, &offsets.stiffnesses());
         holds.follow(springs.held_feet());
         shape.balance(&gram, holds, next.stiffness);
-            let unheld = holds.tighten(&shape.space, &shape.x);
+        let unheld = holds.tighten(&shape.space, &shape.x);
         let change = |c: Choice| (c.stiffness.ln() - next.stiffness.ln()).abs();
         let steady = choice.is_some_and(|c| change(c) < SETTLED);
         choice = Some(next);

@@ -147,7 +147,10 @@ impl<const D: usize> Holds<D> {
 
     /// The largest residual.
     pub(super) fn residual(&self, space: &Space, x: &[Vector<D>]) -> f64 {
-        let each = self.holds.iter().map(|h| h.residual(space, x).1.value.norm());
+        let each = self
+            .holds
+            .iter()
+            .map(|h| h.residual(space, x).1.value.norm());
         each.fold(0.0, f64::max)
     }
 

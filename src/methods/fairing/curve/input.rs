@@ -118,7 +118,11 @@ impl<const D: usize> Task<D> {
             Vector::from_fn(|i, _| frame.axes[i].abs().dot(&fixed))
         };
         Task {
-            points: prepared.kept.iter().map(|i| frame.enter(&request.points[*i])).collect(),
+            points: prepared
+                .kept
+                .iter()
+                .map(|i| frame.enter(&request.points[*i]))
+                .collect(),
             tolerances: prepared.kept.iter().map(|i| tolerance(*i)).collect(),
             weights: prepared
                 .kept
@@ -190,7 +194,10 @@ pub(super) fn prepare(request: &Request) -> Result<Prepared, FitError> {
         issues.add(
             &["input", "points"],
             "too-few-points",
-            format!("{} point(s) given, all equal; a curve needs two", request.points.len()),
+            format!(
+                "{} point(s) given, all equal; a curve needs two",
+                request.points.len()
+            ),
             None,
         );
         return Err(FitError::Invalid(issues.0));
@@ -235,7 +242,10 @@ fn check_options(request: &Request, issues: &mut Complaints) {
         let message = format!("the tolerance is {t}; it must not be negative");
         issues.add(&["options", "tolerance"], "out-of-range", message, hint);
     }
-    let lists = [("tolerances", &o.tolerances, 0.0), ("stiffness", &o.stiffness, f64::MIN_POSITIVE)];
+    let lists = [
+        ("tolerances", &o.tolerances, 0.0),
+        ("stiffness", &o.stiffness, f64::MIN_POSITIVE),
+    ];
     for (name, values, least) in lists {
         if !values.is_empty() && values.len() != count {
             let message = format!("{name} has {} values for {count} points", values.len());
@@ -245,7 +255,12 @@ fn check_options(request: &Request, issues: &mut Complaints) {
             if !(*v >= least && v.is_finite()) {
                 let message = format!("the value for point {i} is {v}");
                 let hint = Some("tolerances must be ≥ 0, stiffnesses > 0");
-                issues.add(&["options", name, &i.to_string()], "out-of-range", message, hint);
+                issues.add(
+                    &["options", name, &i.to_string()],
+                    "out-of-range",
+                    message,
+                    hint,
+                );
             }
         }
     }
@@ -271,10 +286,19 @@ fn check_shape_options(request: &Request, issues: &mut Complaints) {
     {
         let message = format!("{n} control points asked with degree {degree}");
         let hint = Some("more than the degree, at most 20,000");
-        issues.add(&["options", "control_points"], "out-of-range", message, hint);
+        issues.add(
+            &["options", "control_points"],
+            "out-of-range",
+            message,
+            hint,
+        );
     }
     if let Some(e) = o.energy {
-        let all = [("tension", e.tension), ("bending", e.bending), ("jerk", e.jerk)];
+        let all = [
+            ("tension", e.tension),
+            ("bending", e.bending),
+            ("jerk", e.jerk),
+        ];
         for (name, v) in all {
             if !(v >= 0.0 && v.is_finite()) {
                 let message = format!("{name} is {v}; it must not be negative");
@@ -291,13 +315,23 @@ fn check_shape_options(request: &Request, issues: &mut Complaints) {
             && !(t.iter().all(|c| c.is_finite()) && t.norm() > 0.0)
         {
             let message = "the end tangent must be a finite vector other than 0".to_string();
-            issues.add(&["options", "end_tangents", end], "out-of-range", message, None);
+            issues.add(
+                &["options", "end_tangents", end],
+                "out-of-range",
+                message,
+                None,
+            );
         }
         if let Some(c) = o.end_curvatures[k]
             && !c.is_finite()
         {
             let message = "the end curvature must be a finite number".to_string();
-            issues.add(&["options", "end_curvatures", end], "out-of-range", message, None);
+            issues.add(
+                &["options", "end_curvatures", end],
+                "out-of-range",
+                message,
+                None,
+            );
         }
     }
 }
@@ -334,10 +368,18 @@ fn check_indices(request: &Request, issues: &mut Complaints) {
         if a >= b {
             let message = format!("the straight stretch runs from point {a} to point {b}");
             let hint = Some("name its first point first");
-            issues.add(&["options", "straight", &at], "empty-stretch", message, hint);
+            issues.add(
+                &["options", "straight", &at],
+                "empty-stretch",
+                message,
+                hint,
+            );
         }
     }
-    let needs_order = [("knuckles", o.knuckles.is_empty()), ("straight", o.straight.is_empty())];
+    let needs_order = [
+        ("knuckles", o.knuckles.is_empty()),
+        ("straight", o.straight.is_empty()),
+    ];
     for (name, empty) in needs_order {
         if !request.ordered && !empty {
             let message = format!("{name} need points in their order");
@@ -350,7 +392,10 @@ fn check_indices(request: &Request, issues: &mut Complaints) {
 fn check_kept(request: &Request, prepared: &Prepared, issues: &mut Complaints) {
     let closed = prepared.closed == Some(true);
     if closed && prepared.kept.len() < 3 {
-        let message = format!("{} distinct points; a closed curve needs three", prepared.kept.len());
+        let message = format!(
+            "{} distinct points; a closed curve needs three",
+            prepared.kept.len()
+        );
         issues.add(&["input", "points"], "too-few-points", message, None);
     }
     for k in 0..2 {
@@ -361,7 +406,12 @@ fn check_kept(request: &Request, prepared: &Prepared, issues: &mut Complaints) {
         }
         if closed && request.options.end_curvatures[k].is_some() {
             let message = "a closed curve has no ends".to_string();
-            issues.add(&["options", "end_curvatures", &end], "no-ends", message, None);
+            issues.add(
+                &["options", "end_curvatures", &end],
+                "no-ends",
+                message,
+                None,
+            );
         }
     }
 }
@@ -372,7 +422,10 @@ fn frame_of(request: &Request) -> (Frame, usize) {
         2 => Vector3::new(p.x, p.y, 0.0),
         _ => p.coords,
     };
-    let (mut low, mut high) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+    let (mut low, mut high) = (
+        Vector3::repeat(f64::INFINITY),
+        Vector3::repeat(f64::NEG_INFINITY),
+    );
     for p in &request.points {
         low = low.inf(&flat(p));
         high = high.sup(&flat(p));
@@ -389,7 +442,14 @@ fn frame_of(request: &Request) -> (Frame, usize) {
     match plane_axes(request, &frame) {
         Some((axes, shift)) => {
             let middle = frame.middle + shift * frame.size;
-            (Frame { axes, middle, ..frame }, 2)
+            (
+                Frame {
+                    axes,
+                    middle,
+                    ..frame
+                },
+                2,
+            )
         }
         None => (frame, 3),
     }
@@ -433,7 +493,10 @@ fn plane_axes(request: &Request, frame: &Frame) -> Option<([Vector3<f64>; 3], Ve
     }
     let other = if normal.x.abs() < 0.8 { x } else { y };
     let first = (other - normal * normal.dot(&other)).normalize();
-    Some(([first, normal.cross(&first), normal], normal * normal.dot(&mean)))
+    Some((
+        [first, normal.cross(&first), normal],
+        normal * normal.dot(&mean),
+    ))
 }
 
 /// Drops points that repeat their forerunner, and the last one of a closed
@@ -469,8 +532,8 @@ fn merge_repeated(request: &Request, prepared: &mut Prepared) {
         ));
     }
     let count = prepared.kept.len();
-    let ends_meet = count > 3
-        && (place(prepared.kept[0]) - place(prepared.kept[count - 1])).norm() <= near;
+    let ends_meet =
+        count > 3 && (place(prepared.kept[0]) - place(prepared.kept[count - 1])).norm() <= near;
     if !request.ordered || !ends_meet || request.closed == Some(false) {
         return;
     }

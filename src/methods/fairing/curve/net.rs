@@ -8,8 +8,8 @@
 //! are halved ([`split`]).
 
 use super::energy::{add_outer, nodes};
-use super::space::{Space, Vector};
 use super::slips::spread;
+use super::space::{Space, Vector};
 use super::springs::Springs;
 
 /// Spans up to which every interval between points gets one.

@@ -96,11 +96,19 @@ pub(super) fn solve<const D: usize>(
         duals: Vec::new(),
         gap: None,
         steps: solutions,
-        net: if request.options.control_points.is_some() { "asked" } else { "four a point" },
+        net: if request.options.control_points.is_some() {
+            "asked"
+        } else {
+            "four a point"
+        },
         suspects: Vec::new(),
         used,
         trade_off: Vec::new(),
-        tolerances: if asked { tolerances } else { vec![f64::INFINITY; task.points.len()] },
+        tolerances: if asked {
+            tolerances
+        } else {
+            vec![f64::INFINITY; task.points.len()]
+        },
         shape,
         springs,
     })
@@ -117,7 +125,10 @@ fn begin<const D: usize>(
     let degree = degree_of(&request.options);
     let intervals = task.points.len() - usize::from(!traced.closed);
     let free = (SPANS_PER_INTERVAL * intervals).min(MOST_SPANS);
-    let asked = request.options.control_points.map(|n| n.saturating_sub(degree));
+    let asked = request
+        .options
+        .control_points
+        .map(|n| n.saturating_sub(degree));
     let least = if traced.closed { 2 * degree + 2 } else { 1 };
     let spans = asked.unwrap_or(free).max(least);
     let [a, b] = traced.domain;
@@ -140,7 +151,10 @@ fn begin<const D: usize>(
             springs.weights[i] *= BOUNDARY;
         }
     }
-    let weights = request.options.energy.map(|e| [e.tension, e.bending, e.jerk]);
+    let weights = request
+        .options
+        .energy
+        .map(|e| [e.tension, e.bending, e.jerk]);
     let energy = Energy::new(&space, Some(weights.unwrap_or(ENERGY)));
     let broken = || FitError::Numerical("the points do not determine a curve".into());
     let mut shape = first_shape(space, &springs, None).ok_or_else(broken)?;

@@ -109,7 +109,11 @@ fn moves<const D: usize>(
         let (now, parameter, distance) = if held {
             (own, u, distance)
         } else {
-            (Vector::from_fn(|c, _| nearest.point[c]), nearest.parameter, nearest.distance)
+            (
+                Vector::from_fn(|c, _| nearest.point[c]),
+                nearest.parameter,
+                nearest.distance,
+            )
         };
         let tolerance = solved.tolerances[*k];
         out.push(Move {
@@ -138,19 +142,27 @@ fn holds_back<const D: usize>(solved: &Solved<D>) -> Vec<f64> {
         .map(|(z, t)| if bounded(*t) { 2.0 * z / t } else { 0.0 })
         .collect();
     let most = raw.iter().copied().fold(0.0, f64::max);
-    raw.iter().map(|v| if *v > IDLE * most { *v } else { 0.0 }).collect()
+    raw.iter()
+        .map(|v| if *v > IDLE * most { *v } else { 0.0 })
+        .collect()
 }
 
 /// Whether a point keeps its tolerance; a locked one to rounding.
 fn keeps(m: &Move, size: f64) -> bool {
-    m.tolerance.is_none_or(|t| m.distance <= t.max(ROUNDING * size))
+    m.tolerance
+        .is_none_or(|t| m.distance <= t.max(ROUNDING * size))
 }
 
 fn figures(moves: &[Move]) -> MoveFigures {
-    let worst = moves.iter().max_by(|a, b| a.distance.total_cmp(&b.distance));
+    let worst = moves
+        .iter()
+        .max_by(|a, b| a.distance.total_cmp(&b.distance));
     let squares: f64 = moves.iter().map(|m| m.distance * m.distance).sum();
     let past = |share: f64| {
-        let beyond = |m: &&Move| m.tolerance.is_some_and(|t| t > 0.0 && m.distance > share * t);
+        let beyond = |m: &&Move| {
+            m.tolerance
+                .is_some_and(|t| t > 0.0 && m.distance > share * t)
+        };
         moves.iter().filter(beyond).count()
     };
     MoveFigures {
@@ -170,11 +182,7 @@ fn order<const D: usize>(prepared: &Prepared, solved: &Solved<D>) -> Vec<usize> 
     all
 }
 
-fn slips<const D: usize>(
-    request: &Request,
-    prepared: &Prepared,
-    solved: &Solved<D>,
-) -> Vec<Slip> {
+fn slips<const D: usize>(request: &Request, prepared: &Prepared, solved: &Solved<D>) -> Vec<Slip> {
     let slip = |s: &super::slips::Suspect<D>| {
         let index = prepared.kept[s.index];
         let expected = prepared.frame.leave(&s.expected);
@@ -277,7 +285,11 @@ fn before(
     along.sort_by(|a, b| traced.parameters[*a].total_cmp(&traced.parameters[*b]));
     let flat = |k: &usize| {
         let p = request.points[prepared.kept[*k]];
-        if request.dimension == 2 { Point3::new(p.x, p.y, 0.0) } else { p }
+        if request.dimension == 2 {
+            Point3::new(p.x, p.y, 0.0)
+        } else {
+            p
+        }
     };
     let size = along.len().div_ceil(MOST_BEFORE);
     let mut points: Vec<Point3<f64>> = along

@@ -18,7 +18,10 @@ pub(super) fn summary(request: &Request, o: &Outcome) -> Vec<String> {
     ));
     if o.report.noise > 0.0 && request.options.solver == Solver::Own {
         all.push(if o.report.noise_evident {
-            format!("The points scatter by {} (standard deviation).", short(o.report.noise))
+            format!(
+                "The points scatter by {} (standard deviation).",
+                short(o.report.noise)
+            )
         } else {
             format!(
                 "The points are too few to tell noise from shape; it is at most about {}.",
@@ -40,18 +43,29 @@ pub(super) fn summary(request: &Request, o: &Outcome) -> Vec<String> {
             short(s.expected.x),
             short(s.expected.y),
             short(s.expected.z),
-            if s.disregarded { " It is disregarded." } else { "" }
+            if s.disregarded {
+                " It is disregarded."
+            } else {
+                ""
+            }
         )
     }));
     if o.slips.len() > 5 {
-        all.push(format!("{} more points look like slips.", o.slips.len() - 5));
+        all.push(format!(
+            "{} more points look like slips.",
+            o.slips.len() - 5
+        ));
     }
     all
 }
 
 fn verdict(request: &Request, o: &Outcome) -> String {
     let f = &o.move_figures;
-    let name = if request.name.is_empty() { "The curve" } else { &request.name };
+    let name = if request.name.is_empty() {
+        "The curve"
+    } else {
+        &request.name
+    };
     let asked = request.options.tolerance.is_some() || !request.options.tolerances.is_empty();
     if !asked {
         return format!(

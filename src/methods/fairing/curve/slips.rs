@@ -265,7 +265,11 @@ pub(super) fn spread<const D: usize>(sizes: &[f64], weights: &[f64]) -> f64 {
         .collect();
     let middle = used.len() / 2;
     let (_, median, _) = used.select_nth_unstable_by(middle, f64::total_cmp);
-    let of_unit = if D == 2 { 0.674_489_75 } else { (2.0 * 2f64.ln()).sqrt() };
+    let of_unit = if D == 2 {
+        0.674_489_75
+    } else {
+        (2.0 * 2f64.ln()).sqrt()
+    };
     (*median / of_unit).max(f64::MIN_POSITIVE)
 }
 
@@ -290,7 +294,11 @@ mod tests {
     /// Tables: t₉(3.250) two-sided 0.01, t₃₀(2.042) 0.05, z 1.96 0.05.
     #[test]
     fn tails_agree_with_tables() {
-        for (t, freedom, want) in [(3.250_f64, 9.0, 0.01), (2.042, 30.0, 0.05), (1.96, 1e6, 0.05)] {
+        for (t, freedom, want) in [
+            (3.250_f64, 9.0, 0.01),
+            (2.042, 30.0, 0.05),
+            (1.96, 1e6, 0.05),
+        ] {
             let got = tail(t * t, 1, freedom);
             assert!((got / want - 1.0).abs() < 0.08, "{got} for {want}");
         }

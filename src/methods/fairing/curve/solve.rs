@@ -77,7 +77,10 @@ pub(super) fn solve<const D: usize>(
         traced,
         options: &request.options,
         control,
-        quadratic: request.options.energy.map(|e| [e.tension, e.bending, e.jerk]),
+        quadratic: request
+            .options
+            .energy
+            .map(|e| [e.tension, e.bending, e.jerk]),
     };
     let mut fit = bench.free()?;
     control.progress("slips", 50.0);
@@ -176,8 +179,8 @@ impl<const D: usize> Bench<'_, D> {
             self.control.check()?;
             let fit = self.fit_with(spans, net)?;
             let residuals = fit.springs.residuals(&fit.shape.space, &fit.shape.x);
-            let poor = fit.choice.noise > 0.0
-                && misses_shape(&fit.shape.space, &fit.springs, &residuals);
+            let poor =
+                fit.choice.noise > 0.0 && misses_shape(&fit.shape.space, &fit.springs, &residuals);
             if net == "asked" || spans >= most || !poor {
                 return Ok(fit);
             }
@@ -194,7 +197,11 @@ impl<const D: usize> Bench<'_, D> {
     }
 
     fn most_spans(&self) -> usize {
-        let least = if self.traced.closed { 2 * self.degree() + 2 } else { 1 };
+        let least = if self.traced.closed {
+            2 * self.degree() + 2
+        } else {
+            1
+        };
         self.intervals().clamp(least, MOST_SPANS)
     }
 
@@ -301,7 +308,11 @@ impl<const D: usize> Bench<'_, D> {
         let u = &self.traced.parameters;
         let by = |a: &usize, b: &usize| u[*a].total_cmp(&u[*b]);
         let all = || 0..u.len();
-        all().min_by(by).into_iter().chain(all().max_by(by)).collect()
+        all()
+            .min_by(by)
+            .into_iter()
+            .chain(all().max_by(by))
+            .collect()
     }
 
     /// Points that must stay.
@@ -316,8 +327,21 @@ impl<const D: usize> Bench<'_, D> {
         let [a, b] = self.traced.domain;
         let inside = |t: &f64| *t > a && *t < b;
         Breaks {
-            corners: self.task.knuckles.iter().map(|i| u[*i]).filter(inside).collect(),
-            joints: self.task.straight.iter().flatten().map(|i| u[*i]).filter(inside).collect(),
+            corners: self
+                .task
+                .knuckles
+                .iter()
+                .map(|i| u[*i])
+                .filter(inside)
+                .collect(),
+            joints: self
+                .task
+                .straight
+                .iter()
+                .flatten()
+                .map(|i| u[*i])
+                .filter(inside)
+                .collect(),
         }
     }
 
@@ -405,7 +429,8 @@ impl<const D: usize> Bench<'_, D> {
         fit.holds.unstraighten();
         for [a, b] in &self.task.straight {
             let u = &self.traced.parameters;
-            fit.holds.straighten(&fit.shape.energy.nodes, [u[*a], u[*b]]);
+            fit.holds
+                .straighten(&fit.shape.energy.nodes, [u[*a], u[*b]]);
         }
         true
     }
@@ -419,7 +444,8 @@ impl<const D: usize> Bench<'_, D> {
         }
         let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
         let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
-        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
+        fit.holds
+            .weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
         for price in PRICES {
             let bounds = Bounds {
@@ -443,7 +469,8 @@ impl<const D: usize> Bench<'_, D> {
         const ROUNDS: usize = 6;
         let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
         let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
-        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
+        fit.holds
+            .weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
         let mut result = None;
         for _ in 0..ROUNDS {
@@ -471,10 +498,17 @@ impl<const D: usize> Bench<'_, D> {
         let energy = fit.shape.energy.cost(&fit.shape.space, &fit.shape.x)[0];
         let least = super::within::no_energy(&fit.shape.space);
         let mut springs = fit.springs.clone();
-        let bounded = tolerances.iter().filter(|t| t.is_finite() && **t > 0.0).count();
+        let bounded = tolerances
+            .iter()
+            .filter(|t| t.is_finite() && **t > 0.0)
+            .count();
         let share = LAZY * energy.max(least) / bounded.max(1) as f64;
         for (w, t) in springs.weights.iter_mut().zip(tolerances) {
-            *w = if t.is_finite() && *t > 0.0 { share / (t * t) } else { 0.0 };
+            *w = if t.is_finite() && *t > 0.0 {
+                share / (t * t)
+            } else {
+                0.0
+            };
         }
         springs.gram(&fit.shape.space, &fit.shape.x)
     }
@@ -499,13 +533,17 @@ impl<const D: usize> Bench<'_, D> {
                 let tolerances: Vec<f64> = own.iter().map(|t| t * factor).collect();
                 let used = self.approach(&mut fit, &tolerances)?;
                 if used >= 1.0 {
-                    solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
+                    solved
+                        .trade_off
+                        .push(row(factor, used, &fit.shape, &fit.springs));
                     continue;
                 }
                 let kept = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
                 self.walk(&mut fit, &tolerances)?;
                 let used = worst(&fit.shape, &fit.springs, &tolerances);
-                solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
+                solved
+                    .trade_off
+                    .push(row(factor, used, &fit.shape, &fit.springs));
                 (fit.shape, fit.springs, fit.holds) = kept;
             }
         }

@@ -236,10 +236,7 @@ impl<const D: usize> Springs<D> {
             .par_chunks(CHUNK)
             .zip(self.feet.par_chunks(CHUNK))
             .flat_map_iter(|(points, feet)| {
-                points
-                    .iter()
-                    .zip(feet)
-                    .map(|(p, u)| p - space.point(x, *u))
+                points.iter().zip(feet).map(|(p, u)| p - space.point(x, *u))
             })
             .collect()
     }
@@ -317,6 +314,10 @@ impl<const D: usize> Gram<D> {
     /// Σ w b (p − r): the pull of the springs on each coefficient.
     pub(super) fn pull(&self, x: &[Vector<D>]) -> Vec<Vector<D>> {
         let h: Vec<Vector<D>> = x.iter().zip(&self.about).map(|(x, a)| x - a).collect();
-        self.moments.iter().zip(&self.times(&h)).map(|(m, g)| m - g).collect()
+        self.moments
+            .iter()
+            .zip(&self.times(&h))
+            .map(|(m, g)| m - g)
+            .collect()
     }
 }

@@ -84,7 +84,11 @@ pub(super) fn space_for(
 ) -> Result<Space, SplineError> {
     let mut sorted = parameters.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let intervals = if closed { sorted.len() } else { sorted.len() - 1 };
+    let intervals = if closed {
+        sorted.len()
+    } else {
+        sorted.len() - 1
+    };
     let at = |place: f64| {
         let k = (place as usize).min(sorted.len() - 1);
         let next = sorted.get(k + 1).copied().unwrap_or(domain[1]);

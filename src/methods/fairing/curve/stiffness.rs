@@ -339,7 +339,8 @@ impl<'a, const D: usize> Offsets<'a, D> {
 
     /// Σ w (y − h)² at ln λ.
     fn springs(&self, t: f64) -> f64 {
-        self.solve(t.exp()).map_or(f64::INFINITY, |(h, ..)| self.springs_of(&h))
+        self.solve(t.exp())
+            .map_or(f64::INFINITY, |(h, ..)| self.springs_of(&h))
     }
 
     /// Stiffness of each coefficient at λ = 1.

@@ -234,8 +234,16 @@ fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [
             for k in near.saturating_sub(REACH)..=(near + REACH).min(last) {
                 let along = nodes[k + 1] - nodes[k];
                 let t = (p - nodes[k]).dot(&along) / along.norm_squared();
-                let low = if k == 0 && !path.closed { f64::NEG_INFINITY } else { 0.0 };
-                let high = if k == last && !path.closed { f64::INFINITY } else { 1.0 };
+                let low = if k == 0 && !path.closed {
+                    f64::NEG_INFINITY
+                } else {
+                    0.0
+                };
+                let high = if k == last && !path.closed {
+                    f64::INFINITY
+                } else {
+                    1.0
+                };
                 let t = t.clamp(low, high);
                 let distance = (p - (nodes[k] + along * t)).norm();
                 if distance < best.0 {
@@ -249,8 +257,16 @@ fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [
         return (parameters, [0.0, total]);
     }
     // An end cell's mean lies half a cell inside; its points say how far out.
-    let low = parameters.iter().copied().fold(0.0, f64::min).max(-2.0 * path.side);
-    let high = parameters.iter().copied().fold(total, f64::max).min(total + 2.0 * path.side);
+    let low = parameters
+        .iter()
+        .copied()
+        .fold(0.0, f64::min)
+        .max(-2.0 * path.side);
+    let high = parameters
+        .iter()
+        .copied()
+        .fold(total, f64::max)
+        .min(total + 2.0 * path.side);
     for u in &mut parameters {
         *u = (*u - low).clamp(0.0, high - low);
     }
@@ -264,7 +280,11 @@ fn refine<const D: usize>(
     first: &Traced,
     control: &dyn Control,
 ) -> Result<Traced, FitError> {
-    let intervals = if first.closed { points.len() } else { points.len() - 1 };
+    let intervals = if first.closed {
+        points.len()
+    } else {
+        points.len() - 1
+    };
     let least = if first.closed { 2 * degree + 2 } else { 1 };
     let spans = FIRST_SPANS.min(intervals).max(least);
     let data = (&first.parameters[..], first.domain, first.closed);

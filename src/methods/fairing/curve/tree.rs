@@ -42,7 +42,9 @@ impl Tree {
     pub(super) fn edges(&self) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
         let of = |(a, list): (usize, &Vec<(usize, f64)>)| {
             let list = list.clone();
-            list.into_iter().filter(move |(b, _)| a < *b).map(move |(b, l)| (a, b, l))
+            list.into_iter()
+                .filter(move |(b, _)| a < *b)
+                .map(move |(b, l)| (a, b, l))
         };
         self.neighbours.iter().enumerate().flat_map(of)
     }

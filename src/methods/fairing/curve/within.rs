@@ -144,7 +144,11 @@ impl<'a, const D: usize> Walk<'a, D> {
         price: f64,
     ) -> Self {
         let worst = 1.0 - terms.rooms(springs, x).into_iter().fold(1.0, f64::min);
-        let slack = if price > 0.0 { 1.2 * worst + 0.1 - 1.0 } else { 0.0 };
+        let slack = if price > 0.0 {
+            1.2 * worst + 0.1 - 1.0
+        } else {
+            0.0
+        };
         let count = terms.count();
         let first = terms.objective(x).max(no_energy(terms.space));
         let mu = first / count.max(1.0);
@@ -192,7 +196,11 @@ impl<'a, const D: usize> Walk<'a, D> {
         }
         let energy = terms.objective(self.x).max(nothing);
         Ok(Fairest {
-            duals: if done { vec![0.0; self.duals.len()] } else { self.duals.clone() },
+            duals: if done {
+                vec![0.0; self.duals.len()]
+            } else {
+                self.duals.clone()
+            },
             steps,
             gap: if done { 0.0 } else { self.mu * count / energy },
             slack: self.slack,
@@ -246,7 +254,11 @@ impl<'a, const D: usize> Walk<'a, D> {
         }
         // a = Σ z/(c ε²) b ⊗ e couples slack and coefficients.
         let border = terms.border(self.springs, self.x, self.weights());
-        let each = self.rooms.iter().zip(&self.duals).zip(terms.bounds.tolerance);
+        let each = self
+            .rooms
+            .iter()
+            .zip(&self.duals)
+            .zip(terms.bounds.tolerance);
         let (mut curve, mut pull) = (0.0, -self.price);
         for ((c, z), t) in each {
             if t.is_finite() {
@@ -259,7 +271,11 @@ impl<'a, const D: usize> Walk<'a, D> {
         let along = solve(&model)?;
         let dot = |v: &[f64]| border.iter().zip(v).map(|(a, b)| a * b).sum::<f64>();
         let slack = (0.5 * pull - dot(&plain)) / (0.5 * curve - dot(&along));
-        let d = plain.iter().zip(&along).map(|(p, a)| p - slack * a).collect();
+        let d = plain
+            .iter()
+            .zip(&along)
+            .map(|(p, a)| p - slack * a)
+            .collect();
         slack.is_finite().then_some(Step { d, slack })
     }
 
@@ -366,7 +382,11 @@ impl<const D: usize> Terms<'_, D> {
 
     /// Number of bounded points.
     fn count(&self) -> f64 {
-        self.bounds.tolerance.iter().filter(|t| t.is_finite()).count() as f64
+        self.bounds
+            .tolerance
+            .iter()
+            .filter(|t| t.is_finite())
+            .count() as f64
     }
 
     /// Σ z/(c ε²) b ⊗ e.
@@ -390,12 +410,7 @@ impl<const D: usize> Terms<'_, D> {
     }
 
     /// The system of one step.
-    fn model(
-        &self,
-        springs: &Springs<D>,
-        x: &[Vector<D>],
-        weights: Weights,
-    ) -> Model {
+    fn model(&self, springs: &Springs<D>, x: &[Vector<D>], weights: Weights) -> Model {
         let mut model = Model {
             matrix: self.space.matrix(D),
             gradient: vec![0.0; x.len() * D],
@@ -435,7 +450,9 @@ fn room<const D: usize>(e: &Vector<D>, tolerance: f64) -> f64 {
 }
 
 fn as_vectors<const D: usize>(d: &[f64]) -> Vec<Vector<D>> {
-    d.chunks_exact(D).map(Vector::<D>::from_column_slice).collect()
+    d.chunks_exact(D)
+        .map(Vector::<D>::from_column_slice)
+        .collect()
 }
 
 /// What one point adds: K = z/ε², its growth towards the wall, its push.

@@ -3,7 +3,9 @@
 use super::fair::Faired;
 use super::outcome::{Buttock, CellKind};
 use super::request::Request;
-use crate::geometry::{Axis, BSplineCurve, BSplineSurface, Parametrization, SplineError, interpolate};
+use crate::geometry::{
+    Axis, BSplineCurve, BSplineSurface, Parametrization, SplineError, interpolate,
+};
 use crate::methods::FitError;
 use nalgebra::Point3;
 

@@ -118,7 +118,8 @@ fn task(request: &Request, kinds: &[Vec<CellKind>]) -> Result<Task, FitError> {
 fn families(request: &Request, task: &Task) -> Result<[Lines; 2], FitError> {
     let steps = surface::grid::mean_steps(task)?;
     let middle = task.frame.middle;
-    let unit = |x: &[f64], m: f64| -> Vec<f64> { x.iter().map(|x| (x - m) / task.frame.size).collect() };
+    let unit =
+        |x: &[f64], m: f64| -> Vec<f64> { x.iter().map(|x| (x - m) / task.frame.size).collect() };
     Ok([
         lines(&unit(&request.stations, middle.x), &steps[0], DEGREE)?,
         lines(&unit(&request.waterlines, middle.z), &steps[1], DEGREE)?,
@@ -219,8 +220,7 @@ fn table(
 ) -> Vec<Vec<Cell>> {
     let cell = |i: usize, j: usize| {
         let (kind, old) = (kinds[i][j], request.half_breadths[i][j]);
-        let new = (kind != CellKind::Outside)
-            .then(|| surface.surface.point(at[0][i], at[1][j]).y);
+        let new = (kind != CellKind::Outside).then(|| surface.surface.point(at[0][i], at[1][j]).y);
         Cell {
             kind,
             old,

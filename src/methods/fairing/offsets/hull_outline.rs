@@ -36,10 +36,8 @@ pub(super) fn places(request: &Request) -> Vec<Vec<Place>> {
         .collect();
     let within = |r: &Option<[usize; 2]>, k: usize| r.is_some_and(|[a, b]| a <= k && k <= b);
     let place = |i: usize, j: usize| {
-        let (of_station, of_waterline) = (
-            within(&along_station[i], j),
-            within(&along_waterline[j], i),
-        );
+        let (of_station, of_waterline) =
+            (within(&along_station[i], j), within(&along_waterline[j], i));
         match y[i][j] {
             Some(v) if v > 0.0 => Place::Hull,
             Some(_) if of_station && of_waterline => Place::Hull,

@@ -13,7 +13,11 @@ const FEWEST: usize = 4;
 pub(super) fn issues(request: &Request) -> Vec<Issue> {
     let mut issues = Vec::new();
     line(("stations", "station"), &request.stations, &mut issues);
-    line(("waterlines", "waterline"), &request.waterlines, &mut issues);
+    line(
+        ("waterlines", "waterline"),
+        &request.waterlines,
+        &mut issues,
+    );
     cells(request, &mut issues);
     options(request, &mut issues);
     issues.truncate(MOST_ISSUES);
@@ -23,7 +27,12 @@ pub(super) fn issues(request: &Request) -> Vec<Issue> {
 fn line((field, word): (&str, &str), places: &[f64], issues: &mut Vec<Issue>) {
     if places.len() < 2 {
         let message = format!("{} {word} is too few: at least 2", places.len());
-        issues.push(issue(&["input", "offsets", field], "too-few", message, None));
+        issues.push(issue(
+            &["input", "offsets", field],
+            "too-few",
+            message,
+            None,
+        ));
     }
     for (i, x) in places.iter().enumerate() {
         let path = ["input", "offsets", field, &i.to_string()];
@@ -46,7 +55,12 @@ fn cells(request: &Request, issues: &mut Vec<Issue>) {
     let given = &request.half_breadths;
     if given.len() != rows {
         let message = format!("{} rows of half-breadths for {rows} stations", given.len());
-        issues.push(issue(&["input", "offsets", "y"], "row-count", message, None));
+        issues.push(issue(
+            &["input", "offsets", "y"],
+            "row-count",
+            message,
+            None,
+        ));
     }
     let mut positive = Vec::new();
     for (i, row) in given.iter().enumerate() {
@@ -95,7 +109,12 @@ fn options(request: &Request, issues: &mut Vec<Issue>) {
     {
         let message = format!("the tolerance {t} is not above 0");
         let hint = Some("leave it out to have it estimated, or lock cells that must not change");
-        issues.push(issue(&["options", "tolerance"], "not-positive", message, hint));
+        issues.push(issue(
+            &["options", "tolerance"],
+            "not-positive",
+            message,
+            hint,
+        ));
     }
     for (k, (i, j, t)) in o.cell_tolerances.iter().enumerate() {
         let path = ["options", "cell_tolerances", &k.to_string()];
@@ -126,11 +145,7 @@ fn options(request: &Request, issues: &mut Vec<Issue>) {
     }
 }
 
-fn cell_exists(
-    [i, j]: [usize; 2],
-    size: [usize; 2],
-    (path, issues): (&[&str], &mut Vec<Issue>),
-) {
+fn cell_exists([i, j]: [usize; 2], size: [usize; 2], (path, issues): (&[&str], &mut Vec<Issue>)) {
     if i >= size[0] || j >= size[1] {
         let message = format!(
             "cell ({i}, {j}) does not exist: the table has {} stations and {} waterlines",

@@ -72,7 +72,7 @@ fn through(places: &[f64], at: Vec<f64>, degree: usize) -> Result<Lines, FitErro
     let energy = gram(&knots, order);
     let trace = |m: &EnvelopeMatrix| m.diagonal().sum::<f64>();
     let weight = ENERGY.0 * trace(&matrix) / trace(&energy).max(f64::MIN_POSITIVE);
-    matrix.add_scaled(weight, &energy);
+    matrix.add_scaled(&energy, weight);
     let factor = matrix.factor().map_err(|e| numerical(&e))?;
     let mut control = vec![0.0; knots.control_count()];
     for _ in 0..ENERGY.1 {

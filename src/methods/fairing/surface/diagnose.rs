@@ -41,7 +41,10 @@ fn sample(sheet: &Sheet, region: &Region, light: &Vector3<f64>) -> Sampled {
             return (None, None);
         }
         let bends = sheet.bends(at);
-        let shade = bends.first.normal().map(|n| (bends.first.point, n.dot(light)));
+        let shade = bends
+            .first
+            .normal()
+            .map(|n| (bends.first.point, n.dot(light)));
         (shade, bends.curvatures())
     };
     let (light, bend) = (0..u.len() * v.len()).into_par_iter().map(look).unzip();

@@ -46,7 +46,10 @@ pub(in super::super) fn parameters(task: &Task, degree: usize) -> Result<GridPar
             .map_err(|e| FitError::Numerical(e.to_string()))
     };
     let net = Net::new([knots(0)?, knots(1)?]);
-    let at = cell.iter().map(|[r, c]| [lines[0][*r], lines[1][*c]]).collect();
+    let at = cell
+        .iter()
+        .map(|[r, c]| [lines[0][*r], lines[1][*c]])
+        .collect();
     Ok(GridParameters { net, lines, at })
 }
 

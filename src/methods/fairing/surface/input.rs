@@ -146,7 +146,10 @@ fn present(points: &Points, issues: &mut Vec<Issue>) -> (Vec<(usize, Point3<f64>
                     issues.push(not_finite(&path, p));
                 }
             }
-            (list.iter().copied().enumerate().collect(), Layout::Scattered)
+            (
+                list.iter().copied().enumerate().collect(),
+                Layout::Scattered,
+            )
         }
         Points::Grid(rows) => grid(rows, issues),
     }
@@ -169,10 +172,7 @@ fn grid(
     let (mut given, mut cell) = (Vec::new(), Vec::new());
     for (r, row) in rows.iter().enumerate() {
         if row.len() != columns {
-            let message = format!(
-                "row {r} has {} points, the first row {columns}",
-                row.len()
-            );
+            let message = format!("row {r} has {} points, the first row {columns}", row.len());
             let path = ["input", "grid", &r.to_string()];
             issues.push(issue(&path, "row-length", message, None));
         }
@@ -245,17 +245,28 @@ fn options(request: &Request, issues: &mut Vec<Issue>) {
         && !(b.is_finite() && b > 0.0)
     {
         let message = format!("the boundary stiffness factor {b} is not above 0");
-        issues.push(issue(&["options", "boundary_factor"], "not-positive", message, None));
+        issues.push(issue(
+            &["options", "boundary_factor"],
+            "not-positive",
+            message,
+            None,
+        ));
     }
     if let Some(n) = o.control_points
-        && n.iter().any(|n| !(CONTROL_POINTS[0]..=CONTROL_POINTS[1]).contains(n))
+        && n.iter()
+            .any(|n| !(CONTROL_POINTS[0]..=CONTROL_POINTS[1]).contains(n))
     {
         let [low, high] = CONTROL_POINTS;
         let message = format!(
             "{} × {} control points: each number is from {low} to {high}",
             n[0], n[1]
         );
-        issues.push(issue(&["options", "control_points"], "out-of-range", message, None));
+        issues.push(issue(
+            &["options", "control_points"],
+            "out-of-range",
+            message,
+            None,
+        ));
     }
     if !(o.light.iter().all(|x| x.is_finite()) && o.light.norm() > 0.0) {
         let message = "the direction of the light has no length";
@@ -268,7 +279,12 @@ fn tolerance(o: &Options, count: usize, issues: &mut Vec<Issue>) {
         Some(Tolerance::Same(t)) if !(t.is_finite() && *t > 0.0) => {
             let message = format!("the tolerance {t} is not above 0");
             let hint = Some("leave it out to have it estimated, or lock points that must not move");
-            issues.push(issue(&["options", "tolerance"], "not-positive", message, hint));
+            issues.push(issue(
+                &["options", "tolerance"],
+                "not-positive",
+                message,
+                hint,
+            ));
         }
         Some(Tolerance::Each(list)) => {
             positive_list(("tolerance", "tolerance"), list, count, issues);
@@ -282,12 +298,7 @@ fn tolerance(o: &Options, count: usize, issues: &mut Vec<Issue>) {
     }
 }
 
-fn positive_list(
-    (field, what): (&str, &str),
-    list: &[f64],
-    count: usize,
-    issues: &mut Vec<Issue>,
-) {
+fn positive_list((field, what): (&str, &str), list: &[f64], count: usize, issues: &mut Vec<Issue>) {
     if list.len() != count {
         let message = format!("{} values of {what} for {count} points", list.len());
         issues.push(issue(&["options", field], "wrong-count", message, None));

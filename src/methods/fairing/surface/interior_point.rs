@@ -105,7 +105,11 @@ pub(super) fn minimise(
 /// The slack of the start where it is inside, else ε: from nearer the wall the
 /// first steps would be short.
 fn first_slack(offset: f64, side: usize) -> f64 {
-    let slack = if side == 0 { 1.0 + offset } else { 1.0 - offset };
+    let slack = if side == 0 {
+        1.0 + offset
+    } else {
+        1.0 - offset
+    };
     slack.max(1.0)
 }
 
@@ -172,12 +176,17 @@ fn newton(objective: &Objective, strips: &Strips, (x, now): (&State, &Residuals)
         let difference: Vec<f64> = (0..n).map(|i| t[0][i] - t[1][i]).collect();
         let pull = strips.transpose(&difference);
         let rhs: Vec<[f64; 1]> = now.dual.iter().zip(pull).map(|(d, p)| [-d - p]).collect();
-        let c: Vec<f64> = stiffness::solve(&factor, &rhs).iter().map(|v| v[0]).collect();
+        let c: Vec<f64> = stiffness::solve(&factor, &rhs)
+            .iter()
+            .map(|v| v[0])
+            .collect();
         c.iter().all(|v| v.is_finite()).then(|| {
             let place = strips.apply(&c);
             let sign = [1.0, -1.0];
             let s = [0, 1].map(|k| -> Vec<f64> {
-                (0..n).map(|i| -now.strip[k][i] - sign[k] * place[i]).collect()
+                (0..n)
+                    .map(|i| -now.strip[k][i] - sign[k] * place[i])
+                    .collect()
             });
             let z = [0, 1].map(|k| -> Vec<f64> {
                 (0..n)

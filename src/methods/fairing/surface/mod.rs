@@ -116,7 +116,11 @@ fn region(task: &Task, fit: &Fit) -> Region {
 }
 
 /// The sheet within the tolerance, where there is one.
-pub(super) fn bounded(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Option<Bounded>, FitError> {
+pub(super) fn bounded(
+    task: &Task,
+    fit: &Fit,
+    control: &dyn Control,
+) -> Result<Option<Bounded>, FitError> {
     let Some(tolerance) = &task.tolerance else {
         return Ok(None);
     };
@@ -143,7 +147,11 @@ const ANYWHERE: f64 = 10.0;
 fn excused(task: &Task, fit: &Fit, tolerance: &[f64]) -> Vec<f64> {
     let one = |i: usize| {
         let given_up = task.robust && !task.locked[i] && fit.weight[i] < GIVEN_UP * task.weight[i];
-        if given_up { ANYWHERE } else { tolerance[i].min(ANYWHERE) }
+        if given_up {
+            ANYWHERE
+        } else {
+            tolerance[i].min(ANYWHERE)
+        }
     };
     (0..tolerance.len()).map(one).collect()
 }

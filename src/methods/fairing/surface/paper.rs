@@ -76,7 +76,11 @@ pub(super) fn fit(
             .fold(0.0, f64::max);
         at = places(&now);
         let better = best.as_ref().is_none_or(|(w, l, ..)| {
-            if worst <= 1.0 { *w > 1.0 || lambda > *l } else { worst < *w }
+            if worst <= 1.0 {
+                *w > 1.0 || lambda > *l
+            } else {
+                worst < *w
+            }
         });
         if better {
             best = Some((worst, lambda, sheet, at.clone()));
@@ -96,7 +100,11 @@ pub(super) fn fit(
     let bounded = Bounded {
         worst: ratio.fold(0.0, f64::max),
         at: places(&exact),
-        duals: exact.iter().map(|f| f.signed() / lambda).map(|d| -d).collect(),
+        duals: exact
+            .iter()
+            .map(|f| f.signed() / lambda)
+            .map(|d| -d)
+            .collect(),
         sheet: sheet.clone(),
     };
     let fit = Fit {

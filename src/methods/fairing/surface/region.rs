@@ -48,7 +48,11 @@ impl Region {
         let shape = length[0] * length[1] / (longer * longer);
         let wanted = (at.len() as f64 / (POINTS_A_CELL * shape)).sqrt();
         let whole = at.len() < FEWEST;
-        let cells = if whole { 1.0 } else { wanted.clamp(CELLS[0], CELLS[1]).floor() };
+        let cells = if whole {
+            1.0
+        } else {
+            wanted.clamp(CELLS[0], CELLS[1]).floor()
+        };
         let size = length.map(|l| ((cells * l / longer).ceil() as usize).max(1));
         let mut inside = vec![whole; size[0] * size[1]];
         for p in at {
@@ -155,7 +159,9 @@ impl Region {
         for from in 0..4 {
             if inside[from] && !inside[(from + 1) % 4] {
                 let back = (1..4).map(|k| (from + k) % 4);
-                let to = back.into_iter().find(|k| !inside[*k] && inside[(k + 1) % 4]);
+                let to = back
+                    .into_iter()
+                    .find(|k| !inside[*k] && inside[(k + 1) % 4]);
                 if let Some(to) = to {
                     next.insert(edges[from], edges[to]);
                 }

@@ -33,11 +33,7 @@ const ROUNDING: f64 = 1e-7;
 ///
 /// # Errors
 /// [`FitError::Stopped`].
-pub(super) fn slips(
-    task: &Task,
-    fit: &Fit,
-    control: &dyn Control,
-) -> Result<Vec<Slip>, FitError> {
+pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec<Slip>, FitError> {
     let springs = springs_to(&task.points, &fit.at, &task.weight);
     let net = &fit.sheet.net;
     let (control_points, weight, lambda) = if task.points.len() <= ROBUST_UP_TO && !task.robust {
@@ -174,8 +170,17 @@ mod tests {
     /// Tables of the normal distribution.
     #[test]
     fn tails() {
-        for (z, p) in [(1.0, 0.317_310_5), (1.96, 0.049_995_8), (3.0, 2.699_796e-3), (5.0, 5.733_031e-7)] {
-            assert!((two_sided(z) / p - 1.0).abs() < 1e-5, "{z}: {}", two_sided(z));
+        for (z, p) in [
+            (1.0, 0.317_310_5),
+            (1.96, 0.049_995_8),
+            (3.0, 2.699_796e-3),
+            (5.0, 5.733_031e-7),
+        ] {
+            assert!(
+                (two_sided(z) / p - 1.0).abs() < 1e-5,
+                "{z}: {}",
+                two_sided(z)
+            );
         }
     }
 }

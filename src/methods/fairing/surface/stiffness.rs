@@ -101,15 +101,12 @@ pub(in super::super) fn blend(
     b: &EnvelopeMatrix,
 ) -> EnvelopeMatrix {
     let mut sum = a.clone();
-    sum.add_scaled(lambda, b);
+    sum.add_scaled(b, lambda);
     sum
 }
 
 /// Solves for all fields.
-pub(in super::super) fn solve<const D: usize>(
-    factor: &Factor,
-    rhs: &[[f64; D]],
-) -> Vec<[f64; D]> {
+pub(in super::super) fn solve<const D: usize>(factor: &Factor, rhs: &[[f64; D]]) -> Vec<[f64; D]> {
     let mut control = rhs.to_vec();
     let mut column = vec![0.0; rhs.len()];
     for d in 0..D {
@@ -144,8 +141,7 @@ pub(in super::super) fn fit_with<const D: usize>(
     let degrees = normal.points.saturating_sub(model.free).max(1) as f64;
     let determinant = factor.log_determinant();
     let rank = order.saturating_sub(model.free) as f64;
-    let criterion =
-        model.components * (degrees * left.ln() + determinant - rank * lambda.ln());
+    let criterion = model.components * (degrees * left.ln() + determinant - rank * lambda.ln());
     criterion.is_finite().then_some(Chosen {
         lambda,
         control,

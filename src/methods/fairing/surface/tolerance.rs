@@ -73,7 +73,10 @@ pub(in super::super) fn within(
     let mut best: Option<(f64, Bounded)> = None;
     let mut before = f64::INFINITY;
     for round in 0..ROUNDS {
-        control.progress("within tolerance", 40.0 + 45.0 * round as f64 / ROUNDS as f64);
+        control.progress(
+            "within tolerance",
+            40.0 + 45.0 * round as f64 / ROUNDS as f64,
+        );
         let look = looks(&sheet, &at, bounds);
         let Some((moved, duals)) = programme(&sheet, &look, (bounds, &narrow), (energy, control))?
         else {
@@ -184,8 +187,7 @@ fn direction(normal: Option<Vector3<f64>>, axes: Option<[bool; 3]>) -> Vector3<f
     if free.iter().filter(|f| **f).count() == 1 {
         return axis;
     }
-    keep.try_normalize(1e-6)
-        .unwrap_or_else(|| axis.normalize())
+    keep.try_normalize(1e-6).unwrap_or_else(|| axis.normalize())
 }
 
 /// Solves the programme at fixed feet; `None` where it has no solution.
@@ -213,7 +215,11 @@ fn programme(
         directions: &directions,
         cells: Cells::new(net, &at),
         at,
-        looks: looks.iter().zip(&reach).map(|(l, e)| l.direction / *e).collect(),
+        looks: looks
+            .iter()
+            .zip(&reach)
+            .map(|(l, e)| l.direction / *e)
+            .collect(),
         offset: looks.iter().zip(&reach).map(|(l, e)| l.along / e).collect(),
     };
     let objective = objective(sheet, &directions, (energy, bounds.freedom()));
@@ -222,10 +228,19 @@ fn programme(
         return Ok(None);
     }
     let mut moved = sheet.clone();
-    for (p, (n, c)) in moved.control.iter_mut().zip(directions.iter().zip(&optimum.moves)) {
+    for (p, (n, c)) in moved
+        .control
+        .iter_mut()
+        .zip(directions.iter().zip(&optimum.moves))
+    {
         *p += n * *c;
     }
-    let duals = optimum.duals.iter().zip(&reach).map(|(z, e)| z / e).collect();
+    let duals = optimum
+        .duals
+        .iter()
+        .zip(&reach)
+        .map(|(z, e)| z / e)
+        .collect();
     Ok(Some((moved, duals)))
 }
 

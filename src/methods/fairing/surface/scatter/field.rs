@@ -82,7 +82,12 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
         }
     }
     let level = best.ok_or_else(|| FitError::Numerical("no level fits".into()))?;
-    finish(task, (level, all, sample), term(&domain_net(domain, task)?).1, control)
+    finish(
+        task,
+        (level, all, sample),
+        term(&domain_net(domain, task)?).1,
+        control,
+    )
 }
 
 fn domain_net(domain: [[f64; 2]; 2], task: &Task) -> Result<Net, FitError> {

@@ -173,7 +173,9 @@ fn folded(nodes: &Nodes, map: &[[f64; 2]], paths: &[Vec<f64>]) -> f64 {
 fn turned(map: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let turn = |degrees: f64| -> Vec<[f64; 2]> {
         let (s, c) = degrees.to_radians().sin_cos();
-        map.iter().map(|p| [c * p[0] + s * p[1], c * p[1] - s * p[0]]).collect()
+        map.iter()
+            .map(|p| [c * p[0] + s * p[1], c * p[1] - s * p[0]])
+            .collect()
     };
     let sides = |map: &[[f64; 2]]| {
         [0, 1].map(|k| {

@@ -46,10 +46,7 @@ pub(in super::super) fn heading(task: &Task, nodes: &Nodes) -> Option<Vector3<f6
 
 /// The direction across `up` in which the points are longest: a coordinate
 /// axis where `up` is one.
-pub(in super::super) fn longest_across(
-    points: &[Vector3<f64>],
-    up: &Vector3<f64>,
-) -> Vector3<f64> {
+pub(in super::super) fn longest_across(points: &[Vector3<f64>], up: &Vector3<f64>) -> Vector3<f64> {
     if up.amax() > 1.0 - 1e-12 {
         let (mut low, mut high) = (points[0], points[0]);
         for p in points {

@@ -66,8 +66,10 @@ pub(in super::super) fn fit(
             "not-a-sheet",
             "the points cannot be unrolled into one sheet: they close all round, branch, or have \
              many points off the sheet",
-            Some("cut them along a line, for example by leaving out a sector, and give each sheet \
-                  by itself"),
+            Some(
+                "cut them along a line, for example by leaving out a sector, and give each sheet \
+                  by itself",
+            ),
         )])
     })?;
     control.check()?;
@@ -151,7 +153,11 @@ fn on_net(
     cloud: &Cloud,
     (near, control): (Option<f64>, &dyn Control),
 ) -> Result<Level, FitError> {
-    let term = energy(task.energy, (levels::order(task.points.len()), 1.0), net.domain());
+    let term = energy(
+        task.energy,
+        (levels::order(task.points.len()), 1.0),
+        net.domain(),
+    );
     let model = Likelihood {
         free: term.free_dimension(levels::DEGREE),
         components: 1.0,
@@ -199,12 +205,7 @@ fn refine(
 }
 
 /// Every `stride`-th point with its foot on a sheet, from its node's place.
-fn seated(
-    task: &Task,
-    nodes: &Nodes,
-    (sheet, map): (&Sheet, &[[f64; 2]]),
-    stride: usize,
-) -> Cloud {
+fn seated(task: &Task, nodes: &Nodes, (sheet, map): (&Sheet, &[[f64; 2]]), stride: usize) -> Cloud {
     let points: Vec<Vector3<f64>> = task.points.iter().step_by(stride).copied().collect();
     let starts: Vec<[f64; 2]> = points
         .iter()

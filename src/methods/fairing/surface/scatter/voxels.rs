@@ -71,10 +71,8 @@ fn around(k: [i64; 3], reach: i64) -> impl Iterator<Item = [i64; 3]> {
     let span = -reach..=reach;
     span.clone().flat_map(move |a| {
         let span = span.clone();
-        span.clone().flat_map(move |b| {
-            span.clone()
-                .map(move |c| [k[0] + a, k[1] + b, k[2] + c])
-        })
+        span.clone()
+            .flat_map(move |b| span.clone().map(move |c| [k[0] + a, k[1] + b, k[2] + c]))
     })
 }
 
@@ -117,7 +115,11 @@ pub(in super::super) fn nodes(points: &[Vector3<f64>]) -> Nodes {
             .filter(|j| *j != i)
             .collect()
     };
-    let near = keys.iter().enumerate().map(|(i, k)| neighbours(*k, i)).collect();
+    let near = keys
+        .iter()
+        .enumerate()
+        .map(|(i, k)| neighbours(*k, i))
+        .collect();
     let mut nodes = Nodes {
         place,
         count,

@@ -1,0 +1,153 @@
+//! Points of two or three coordinates, and indices, on the wire.
+
+use super::super::curves::LARGEST_COORDINATE;
+use nalgebra::Point3;
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::ser::SerializeSeq;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
+use utoipa::openapi::RefOr;
+use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, SchemaType, Type};
+use utoipa::{PartialSchema, ToSchema};
+
+/// A measured point of the plane or of space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeasuredPoint {
+    coordinates: [f64; 3],
+    dimension: usize,
+}
+
+impl MeasuredPoint {
+    /// 2 or 3.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+}
+
+impl From<MeasuredPoint> for Point3<f64> {
+    /// z is 0 in the plane.
+    fn from(p: MeasuredPoint) -> Self {
+        Point3::from(p.coordinates)
+    }
+}
+
+impl Serialize for MeasuredPoint {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut list = serializer.serialize_seq(Some(self.dimension))?;
+        for x in &self.coordinates[..self.dimension] {
+            list.serialize_element(x)?;
+        }
+        list.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for MeasuredPoint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(Coordinates)
+    }
+}
+
+struct Coordinates;
+
+impl<'de> Visitor<'de> for Coordinates {
+    type Value = MeasuredPoint;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("two or three coordinates")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<MeasuredPoint, A::Error> {
+        let (mut coordinates, mut dimension) = ([0.0; 3], 0);
+        while let Some(x) = list.next_element()? {
+            let slot = coordinates.get_mut(dimension);
+            *slot.ok_or_else(|| A::Error::invalid_length(4, &self))? = x;
+            dimension += 1;
+        }
+        if dimension < 2 {
+            return Err(A::Error::invalid_length(dimension, &self));
+        }
+        Ok(MeasuredPoint {
+            coordinates,
+            dimension,
+        })
+    }
+}
+
+impl PartialSchema for MeasuredPoint {
+    fn schema() -> RefOr<Schema> {
+        let coordinate = ObjectBuilder::new()
+            .schema_type(SchemaType::Type(Type::Number))
+            .minimum(Some(-LARGEST_COORDINATE))
+            .maximum(Some(LARGEST_COORDINATE));
+        ArrayBuilder::new()
+            .items(coordinate)
+            .min_items(Some(2))
+            .max_items(Some(3))
+            .description(Some("x, y, or x, y, z"))
+            .examples([serde_json::json!([6.45, 3.2])])
+            .into()
+    }
+}
+
+impl ToSchema for MeasuredPoint {}
+
+/// An index or a count. JSON knows no integers, so `3.0` is one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Index(pub usize);
+
+impl<'de> Deserialize<'de> for Index {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        super::super::curves::whole_number(deserializer).map(Index)
+    }
+}
+
+/// The largest index: of a million points.
+const LARGEST_INDEX: f64 = 999_999.0;
+
+fn index() -> ObjectBuilder {
+    ObjectBuilder::new()
+        .schema_type(SchemaType::Type(Type::Integer))
+        .minimum(Some(0.0))
+        .maximum(Some(LARGEST_INDEX))
+}
+
+impl PartialSchema for Index {
+    fn schema() -> RefOr<Schema> {
+        index().into()
+    }
+}
+
+impl ToSchema for Index {}
+
+/// Two indices or counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct IndexPair(pub [Index; 2]);
+
+impl IndexPair {
+    /// Both numbers.
+    #[must_use]
+    pub fn numbers(self) -> [usize; 2] {
+        self.0.map(|i| i.0)
+    }
+}
+
+impl From<[usize; 2]> for IndexPair {
+    fn from(numbers: [usize; 2]) -> Self {
+        IndexPair(numbers.map(Index))
+    }
+}
+
+impl PartialSchema for IndexPair {
+    fn schema() -> RefOr<Schema> {
+        ArrayBuilder::new()
+            .items(index())
+            .min_items(Some(2))
+            .max_items(Some(2))
+            .into()
+    }
+}
+
+impl ToSchema for IndexPair {}

@@ -1,0 +1,207 @@
+//! `fairing` as the HTTP layer knows it.
+
+use super::{Fitted, Format, Header, Job, Method, Schemas, Words, json_line, misread};
+use crate::http::dto::Point;
+use crate::http::dto::fairing::{FairingInput, FairingOptions, FairingResult, to_request};
+use crate::http::dto::job::{FairingJob, Normalized};
+use crate::http::problem::{ApiError, FieldError};
+use crate::http::schema_check::Rule;
+use crate::methods::fairing::{self, Request};
+use crate::methods::{Control, FitError, Issue};
+use nalgebra::Point3;
+use serde_json::Value;
+use std::sync::LazyLock;
+
+const WORDS: Words = Words {
+    summary: "The fairest curve or surface within a tolerance of measured points.",
+    description: "Offsets that were measured, or lifted from a drawing, carry errors. The shape \
+        is the B-spline whose curvature changes least while no point moves farther than its \
+        tolerance; without a tolerance the noise is estimated from the points and the shape \
+        follows them as nearly as that allows. Points of a curve or a sheet, in order or not, \
+        grids with gaps, and tables of offsets, which are faired as one surface. Points that \
+        look like slips are named with the value that the fair shape would have there.",
+    source: "After Jing, Xi & Tang 1998, whose formulation is the solver `paper`.",
+    lengths: &["tolerance", "tolerances", "buttocks", "cell_tolerances"],
+    gifts: &[
+        ("verdict", "within_limits: every point keeps its tolerance"),
+        ("summary", "Sentences, the verdict first"),
+        (
+            "curves",
+            "The fair curve; of a table its stations, waterlines and buttocks",
+        ),
+        ("surfaces", "The fair surface, control points [u][v]"),
+        (
+            "method_specific.moves",
+            "Every point: old, new, move, what it holds the shape back",
+        ),
+        (
+            "method_specific.table",
+            "The table of offsets: old, new, move of every cell",
+        ),
+        (
+            "method_specific.slips",
+            "Suspected slips with the value to expect",
+        ),
+        (
+            "method_specific.trade_off",
+            "What other tolerances would give",
+        ),
+        ("method_specific.comb", "The curvature comb of a curve"),
+        (
+            "method_specific.outline",
+            "Where a surface has data, in (u, v)",
+        ),
+        ("method_specific.isophotes", "Data for an isophote plot"),
+        ("diagnostics", "Noise, moves, fairness before and after"),
+    ],
+};
+
+static RULE: LazyLock<Result<Rule, String>> = LazyLock::new(super::rule_of::<FairingJob>);
+
+/// The method.
+#[derive(Debug)]
+pub struct Fairing;
+
+impl Method for Fairing {
+    fn name(&self) -> &'static str {
+        "fairing"
+    }
+
+    fn words(&self) -> &'static Words {
+        &WORDS
+    }
+
+    fn schemas(&self) -> Schemas {
+        Schemas::of::<FairingInput, FairingOptions>()
+    }
+
+    fn formats(&self) -> &'static [Format] {
+        &[Format::Json, Format::Csv, Format::Svg, Format::Obj]
+    }
+
+    fn rule(&self) -> Result<&'static Rule, &'static String> {
+        RULE.as_ref()
+    }
+
+    fn read(&self, value: Value) -> Result<Box<dyn Job>, Vec<FieldError>> {
+        let job: FairingJob = serde_json::from_value(value).map_err(misread)?;
+        let request = to_request(&job.input, &job.options, job.units)?;
+        Ok(Box::new(ReadJob { job, request }))
+    }
+
+    fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError> {
+        let document: FairingResult =
+            serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
+        document.write(format)
+    }
+}
+
+/// A job that was read.
+#[derive(Debug)]
+struct ReadJob {
+    job: FairingJob,
+    request: Request,
+}
+
+impl Job for ReadJob {
+    fn method(&self) -> &'static str {
+        Fairing.name()
+    }
+
+    fn header(&self) -> Header<'_> {
+        Header {
+            label: self.job.label.as_deref(),
+            budget: self.job.budget,
+        }
+    }
+
+    fn warnings(&self) -> Result<Vec<String>, FitError> {
+        let issues = fairing::validate(&self.request);
+        if issues.is_empty() {
+            Ok(Vec::new())
+        } else {
+            Err(FitError::Invalid(self.renamed(issues)))
+        }
+    }
+
+    fn normalized(&self) -> Normalized {
+        let points = points(&self.request);
+        let mut counts = vec![("points", points.len())];
+        if let Some(table) = &self.job.input.offsets {
+            counts.push(("stations", table.stations.len()));
+            counts.push(("waterlines", table.waterlines.len()));
+        }
+        if let Some(grid) = &self.job.input.grid {
+            counts.push(("rows", grid.len()));
+            counts.push(("columns", grid.first().map_or(0, Vec::len)));
+        }
+        Normalized::new(&points, self.job.units, &counts)
+    }
+
+    fn fit(&self, input_sha256: String, control: &dyn Control) -> Result<Fitted, FitError> {
+        let outcome = fairing::fit(&self.request, control).map_err(|error| match error {
+            FitError::Invalid(issues) => FitError::Invalid(self.renamed(issues)),
+            other => other,
+        })?;
+        let document = FairingResult::new(&self.job, &self.request, &outcome, input_sha256);
+        Ok(Fitted {
+            result: json_line(&document)?,
+            diagnostics: json_line(&document.diagnostics)?,
+            within_limits: document.is_within_limits(),
+            message: document.summary.first().cloned().unwrap_or_default(),
+            warnings: document.warnings,
+        })
+    }
+}
+
+impl ReadJob {
+    /// Issues with the places that they have in the job: one field of the wire
+    /// can be two of the method, by the kind of input.
+    fn renamed(&self, mut issues: Vec<Issue>) -> Vec<Issue> {
+        let names: &[(&str, &str)] = match &self.request {
+            Request::Curve(_) => &[],
+            Request::Surface(_) if self.job.options.tolerances.is_some() => &[
+                ("tolerance", "tolerances"),
+                ("energy", "surface_energy"),
+                ("control_points", "control_net"),
+            ],
+            Request::Surface(_) => &[
+                ("energy", "surface_energy"),
+                ("control_points", "control_net"),
+            ],
+            Request::Offsets(_) => &[("locked", "locked_cells")],
+        };
+        for issue in &mut issues {
+            if let [first, second, ..] = issue.path.as_mut_slice()
+                && first == "options"
+                && let Some((_, name)) = names.iter().find(|(method, _)| method == second)
+            {
+                *second = (*name).to_owned();
+            }
+        }
+        issues
+    }
+}
+
+/// All given points, in the plane with z = 0.
+fn points(request: &Request) -> Vec<Point> {
+    use crate::methods::fairing::surface::request::Points;
+    match request {
+        Request::Curve(r) => r.points.iter().map(|p| (*p).into()).collect(),
+        Request::Surface(r) => match &r.points {
+            Points::Scattered(points) => points.iter().map(|p| (*p).into()).collect(),
+            Points::Grid(rows) => {
+                let measured = rows.iter().flatten().flatten();
+                measured.map(|p| (*p).into()).collect()
+            }
+        },
+        Request::Offsets(r) => {
+            let rows = r.stations.iter().zip(&r.half_breadths);
+            let cells = rows.flat_map(|(x, row)| {
+                let cells = row.iter().zip(&r.waterlines);
+                cells.filter_map(move |(y, z)| Some(Point3::new(*x, (*y)?, *z)))
+            });
+            cells.map(Into::into).collect()
+        }
+    }
+}
