@@ -13,5 +13,6 @@
 pub mod csv;
 pub mod obj;
 pub mod plates;
+pub mod points_in;
 mod strip;
 pub mod svg;
