@@ -58,19 +58,27 @@ impl FromRequest<Api> for JsonBody {
 
     async fn from_request(request: Request, api: &Api) -> Result<Self, ApiError> {
         require_json(request.headers())?;
-        let limits = api.limits;
-        let body = Limited::new(request.into_body(), limits.inflated_bytes);
-        match tokio::time::timeout(limits.body_time, body.collect()).await {
-            Ok(Ok(collected)) => Ok(JsonBody(collected.to_bytes())),
-            Ok(Err(error)) => Err(body_error(error.as_ref(), limits)),
-            Err(_) => Err(ApiError::new(
-                Code::BodyTimeout,
-                format!(
-                    "the body did not arrive within {} s",
-                    limits.body_time.as_secs()
-                ),
-            )),
-        }
+        whole_body(request, api).await.map(JsonBody)
+    }
+}
+
+/// A body, unpacked, within the limits.
+///
+/// # Errors
+/// `too-large`, `body-timeout`, or `syntax` for one that breaks off.
+pub async fn whole_body(request: Request, api: &Api) -> Result<Bytes, ApiError> {
+    let limits = api.limits;
+    let body = Limited::new(request.into_body(), limits.inflated_bytes);
+    match tokio::time::timeout(limits.body_time, body.collect()).await {
+        Ok(Ok(collected)) => Ok(collected.to_bytes()),
+        Ok(Err(error)) => Err(body_error(error.as_ref(), limits)),
+        Err(_) => Err(ApiError::new(
+            Code::BodyTimeout,
+            format!(
+                "the body did not arrive within {} s",
+                limits.body_time.as_secs()
+            ),
+        )),
     }
 }
 

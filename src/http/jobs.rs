@@ -2,13 +2,14 @@
 
 use super::Api;
 use super::dto::job::{Job as JobAnswer, JobList, JobRequest, StatusWord, Validation};
-use super::extract::{Asked, Given, Id, JsonBody, Nothing, Owner, Parameters, idempotency_key};
+use super::extract::{Asked, Given, Id, Nothing, Owner, Parameters, idempotency_key};
 use super::failures::retry_seconds;
 use super::intake;
 use super::methods;
 use super::openapi::{Ending, Inputs, Listing, OneJob, Submitting};
 use super::problem::{ApiError, Success};
 use super::respond;
+use super::upload::{JobWithFile, Posted};
 use crate::jobs::{Accepted, Job, ListQuery, NewJob, Status};
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderName, header};
@@ -56,7 +57,8 @@ impl Parameters for SubmitQuery {
             description = "Makes repeating the call harmless: the same key and body give the same job.",
             min_length = 1, max_length = 255, pattern = "^[!-~]+$", nullable = false),
     ),
-    request_body(content = JobRequest, description = "The job"),
+    request_body(description = "The job, or a form with the job and a file of points",
+        content((JobRequest = "application/json"), (JobWithFile = "multipart/form-data"))),
     responses(
         (status = 200, description = "The job has ended (`wait`, or a replay), or is valid (`validate_only`)",
             content((JobOrValidation = "application/json")),
@@ -75,11 +77,12 @@ pub(super) async fn submit(
     Owner(owner): Owner,
     Asked(query): Asked<SubmitQuery>,
     headers: HeaderMap,
-    JsonBody(body): JsonBody,
+    Posted { body, notes }: Posted,
 ) -> Result<Response, ApiError> {
     let sha = intake::sha256_hex(&body);
     let idempotency = idempotency_key(&headers, &sha)?;
     let (posted, warnings) = check(body.clone()).await?;
+    let warnings = [notes, warnings].concat();
     if query.validate_only {
         let normalized = posted.normalized();
         return Ok(respond::json(

@@ -15,7 +15,7 @@
 //! published, compiled and checked ([`schema_check`]).
 //!
 //! Limits: one tenant (see [`extract::Owner`]); files are written anew at each
-//! request, which takes milliseconds; no streams, no uploads of files.
+//! request, which takes milliseconds; no streams.
 
 // utoipa's attribute macros name types by paths that the lint finds too long.
 #![allow(unused_qualifications)]
@@ -34,6 +34,7 @@ pub mod problem;
 pub mod respond;
 pub mod schema_check;
 pub mod strict_json;
+pub mod upload;
 
 mod docs;
 mod health;

@@ -1,11 +1,15 @@
 //! `fairing` as the HTTP layer knows it.
 
 use super::{Fitted, Format, Header, Job, Method, Schemas, Words, json_line, misread};
+use crate::formats::points_in::{self, Orientation};
 use crate::http::dto::Point;
-use crate::http::dto::fairing::{FairingInput, FairingOptions, FairingResult, to_request};
+use crate::http::dto::fairing::{
+    FairingInput, FairingOptions, FairingResult, FileHolds, to_request,
+};
 use crate::http::dto::job::{FairingJob, Normalized};
-use crate::http::problem::{ApiError, FieldError};
+use crate::http::problem::{ApiError, Code, FieldError};
 use crate::http::schema_check::Rule;
+use crate::http::upload::File;
 use crate::methods::fairing::{self, Request};
 use crate::methods::{Control, FitError, Issue};
 use nalgebra::Point3;
@@ -89,11 +93,96 @@ impl Method for Fairing {
         Ok(Box::new(ReadJob { job, request }))
     }
 
+    fn take_file(&self, job: &mut Value, file: &File) -> Result<Vec<String>, ApiError> {
+        take_file(job, file).map_err(|fault| ApiError::at(Code::InvalidJob, vec![fault]))
+    }
+
     fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError> {
         let document: FairingResult =
             serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
         document.write(format)
     }
+}
+
+/// Puts the file's points or table in the place of `input.file`.
+fn take_file(job: &mut Value, file: &File) -> Result<Vec<String>, FieldError> {
+    let input = job["input"].as_object_mut().ok_or_else(|| {
+        FieldError::new(
+            "/input",
+            "missing",
+            "the job has no \"input\", not even an empty one",
+        )
+    })?;
+    if let Some(name) = ["points", "grid", "offsets"]
+        .iter()
+        .find(|n| input.contains_key(**n))
+    {
+        let message = format!("\"{name}\" and a file are given; one is enough");
+        return Err(FieldError::new("/input", "ambiguous", message));
+    }
+    let holds = input.remove("file").unwrap_or_else(|| "points".into());
+    let holds: FileHolds = serde_json::from_value(holds).map_err(|_| {
+        let message = "this must be one of points, offsets, offsets_transposed";
+        FieldError::new("/input/file", "not-one-of", message)
+    })?;
+    let expected = match holds {
+        FileHolds::Points => points_in::Expected::Points,
+        FileHolds::Offsets => points_in::Expected::Offsets(Orientation::WaterlinesAcross),
+        FileHolds::OffsetsTransposed => points_in::Expected::Offsets(Orientation::StationsAcross),
+    };
+    let reading = points_in::read(&file.bytes, expected).map_err(|e| {
+        let place = match e.column {
+            Some(column) => format!("file, line {}, column {column}", e.line),
+            None => format!("file, line {}", e.line),
+        };
+        FieldError::new(place, "unreadable", e.sentence())
+            .hint(e.hint())
+            .value(e.found)
+    })?;
+    match reading.contents {
+        points_in::Contents::Points(list) => {
+            input.insert("points".into(), point_list(&list)?);
+        }
+        points_in::Contents::Offsets(table) => {
+            let table = ascending(table);
+            let table = serde_json::json!({
+                "stations": table.stations,
+                "waterlines": table.waterlines,
+                "y": table.half_breadths,
+            });
+            input.insert("offsets".into(), table);
+        }
+    }
+    Ok(vec![format!("{}: {}", file.name, reading.how.sentence())])
+}
+
+/// A table that runs from the bow aft, or from the top down, turned round.
+fn ascending(mut table: points_in::OffsetTable) -> points_in::OffsetTable {
+    let falls = |v: &[f64]| v.windows(2).all(|p| p[1] < p[0]);
+    if falls(&table.stations) {
+        table.stations.reverse();
+        table.half_breadths.reverse();
+    }
+    if falls(&table.waterlines) {
+        table.waterlines.reverse();
+        table.half_breadths.iter_mut().for_each(|row| row.reverse());
+    }
+    table
+}
+
+fn point_list(list: &points_in::PointList) -> Result<Value, FieldError> {
+    let dimension = list.coordinates.len();
+    let row = |(row, line): (&[Option<f64>; 3], &usize)| {
+        let numbers: Option<Vec<f64>> = row[..dimension].iter().copied().collect();
+        numbers.map(Value::from).ok_or_else(|| {
+            let place = format!("file, line {line}");
+            let message = "a coordinate of this point is missing";
+            FieldError::new(place, "missing", message)
+                .hint("leave the whole line out if the point was not measured")
+        })
+    };
+    let rows = list.rows.iter().zip(&list.lines).map(row);
+    Ok(Value::Array(rows.collect::<Result<_, _>>()?))
 }
 
 /// A job that was read.

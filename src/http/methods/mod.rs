@@ -14,8 +14,9 @@ pub(super) use resource::routes;
 
 use super::dto::Point;
 use super::dto::job::{BoundingBox, Budget, Normalized, Units};
-use super::problem::{ApiError, FieldError};
+use super::problem::{ApiError, Code, FieldError};
 use super::schema_check::Rule;
+use super::upload::File;
 use crate::methods::{Control, FitError};
 use serde_json::{Map, Value};
 use utoipa::{PartialSchema, ToSchema};
@@ -46,6 +47,17 @@ pub trait Method: Sync {
     /// # Errors
     /// Every rule that needs two values at once and is broken.
     fn read(&self, value: Value) -> Result<Box<dyn Job>, Vec<FieldError>>;
+    /// Puts a file's contents into a job that came with it, and tells how it
+    /// was read.
+    ///
+    /// # Errors
+    /// `invalid-job` with the place in the file or the job.
+    fn take_file(&self, job: &mut Value, file: &File) -> Result<Vec<String>, ApiError> {
+        let _ = (job, file);
+        let message = format!("a job of {} takes no file", self.name());
+        let fault = FieldError::new("file", "unexpected", message);
+        Err(ApiError::at(Code::InvalidJob, vec![fault]))
+    }
     /// Writes a stored result in another form.
     ///
     /// # Errors

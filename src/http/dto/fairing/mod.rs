@@ -50,10 +50,28 @@ pub struct FairingInput {
     /// A table of offsets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offsets: Option<OffsetTable>,
+    /// Only in a form that comes with a file: what the file holds, `points`
+    /// when nothing is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<FileHolds>,
 }
 
 fn yes() -> bool {
     true
+}
+
+/// What an uploaded file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum FileHolds {
+    /// One point a line.
+    Points,
+    /// A table with one station a line: heights of the waterlines in the first
+    /// row, places of the stations in the first column.
+    Offsets,
+    /// A table with one waterline a line: places of the stations in the first
+    /// row, heights of the waterlines in the first column.
+    OffsetsTransposed,
 }
 
 /// What loose points are of.

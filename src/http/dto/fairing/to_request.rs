@@ -22,6 +22,11 @@ pub fn to_request(
     units: Units,
 ) -> Result<Request, Vec<FieldError>> {
     let mut faults = Vec::new();
+    if input.file.is_some() {
+        let message = "\"file\" goes with a form that has a part of that name";
+        let fault = FieldError::new("/input/file", "unexpected", message);
+        faults.push(fault.hint("post multipart/form-data with the parts \"job\" and \"file\""));
+    }
     let request = match (&input.points, &input.grid, &input.offsets) {
         (Some(points), None, None) => loose(points, input, options, (units, &mut faults)),
         (None, Some(grid), None) => {
