@@ -34,7 +34,8 @@ impl Foot {
     }
 }
 
-/// A step shorter than this share of the domain changes nothing.
+/// A step that promises to lower the squared distance by less than this share
+/// of it changes nothing.
 const SETTLED: f64 = 1e-10;
 /// Halvings of a step that leads away from the point.
 const HALVINGS: usize = 4;
@@ -58,7 +59,10 @@ pub(in super::super) fn foot(
     let domain = sheet.net.domain();
     let mut best = look(sheet.net.clamp(start));
     for _ in 0..steps {
-        let mut step = free_step(&best, domain);
+        let (mut step, promise) = free_step(&best, domain);
+        if promise <= SETTLED * best.offset.norm_squared() {
+            break;
+        }
         let mut moved = false;
         for _ in 0..HALVINGS {
             let next = [best.at[0] + step[0], best.at[1] + step[1]];
@@ -70,16 +74,16 @@ pub(in super::super) fn foot(
             }
             step = step.map(|s| 0.5 * s);
         }
-        let settled = (0..2).all(|k| step[k].abs() < SETTLED * (domain[k][1] - domain[k][0]));
-        if !moved || settled {
+        if !moved {
             break;
         }
     }
     best
 }
 
-/// The Gauss–Newton step that leaves bounds alone which it would cross.
-fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> [f64; 2] {
+/// The Gauss–Newton step that leaves bounds alone which it would cross, and by
+/// how much it would lower the squared distance from a plane.
+fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> ([f64; 2], f64) {
     let (du, dv) = (&foot.sheet.du, &foot.sheet.dv);
     let (e, f, g) = (du.dot(du), du.dot(dv), dv.dot(dv));
     let slope = [du.dot(&foot.offset), dv.dot(&foot.offset)];
@@ -89,7 +93,7 @@ fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> [f64; 2] {
     });
     let alone = |s: f64, square: f64| if square > 0.0 { s / square } else { 0.0 };
     let area = e * g - f * f;
-    match held {
+    let step = match held {
         [true, true] => [0.0, 0.0],
         [true, false] => [0.0, alone(slope[1], g)],
         [false, true] => [alone(slope[0], e), 0.0],
@@ -98,7 +102,8 @@ fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> [f64; 2] {
             (e * slope[1] - f * slope[0]) / area,
         ],
         [false, false] => [0.5 * alone(slope[0], e), 0.5 * alone(slope[1], g)],
-    }
+    };
+    (step, step[0] * slope[0] + step[1] * slope[1])
 }
 
 /// Feet of all points, in parallel.

@@ -31,6 +31,7 @@ mod report;
 pub mod request;
 mod scatter;
 mod slips;
+mod spans;
 pub(super) mod springs;
 pub(super) mod stiffness;
 mod strips;

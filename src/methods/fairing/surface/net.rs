@@ -1,7 +1,8 @@
 //! The space of a fit: a tensor product of two knot vectors, its numbering of
 //! the unknowns, and the sheets that live in it.
 
-use crate::geometry::{BasisJet, Knots, basis_jet};
+use super::spans::{Acting, Spans};
+use crate::geometry::Knots;
 use nalgebra::{Point3, Vector3};
 
 /// Most basis functions that act in one direction: degree 5 and one.
@@ -12,13 +13,16 @@ pub(in super::super) const MOST_ACTING: usize = 6;
 pub(in super::super) struct Net {
     /// Knots in u and in v.
     pub(in super::super) knots: [Knots; 2],
+    /// Their spans.
+    pub(in super::super) spans: [Spans; 2],
 }
 
 impl Net {
     pub(in super::super) fn new(knots: [Knots; 2]) -> Self {
         debug_assert_eq!(knots[0].degree(), knots[1].degree());
         debug_assert!(knots[0].degree() < MOST_ACTING);
-        Net { knots }
+        let spans = [Spans::new(&knots[0]), Spans::new(&knots[1])];
+        Net { knots, spans }
     }
 
     /// Control points in u and v.
@@ -49,11 +53,8 @@ impl Net {
     }
 
     /// Basis functions in u and v with `R − 1` derivatives.
-    pub(in super::super) fn jets<const R: usize>(&self, [u, v]: [f64; 2]) -> [BasisJet<R>; 2] {
-        [
-            basis_jet::<R>(&self.knots[0], u),
-            basis_jet::<R>(&self.knots[1], v),
-        ]
+    pub(in super::super) fn jets<const R: usize>(&self, [u, v]: [f64; 2]) -> [Acting<R>; 2] {
+        [self.spans[0].acting(u), self.spans[1].acting(v)]
     }
 
     /// First and last parameter of each direction.

@@ -6,7 +6,7 @@ use super::fit::{Fit, springs_to};
 use super::net::Sheet;
 use super::outcome::{Active, Move, Outcome, Parametrisation, Slip, TradeOff};
 use super::region::Region;
-use super::springs::{Normal, gather};
+use super::springs::{Normal, Springs, gather};
 use super::stiffness::fit_with;
 use super::task::Task;
 use super::tolerance::{Bounded, energy_of, exact_feet};
@@ -21,7 +21,7 @@ const TRADES: [f64; 7] = [1e-3, 1e-2, 1e-1, 1.0, 1e1, 1e2, 1e3];
 const FEW_TRADES: [f64; 3] = [1e-2, 1.0, 1e2];
 /// Order × half bandwidth² above which it is.
 const DEAR: f64 = 5e7;
-/// Points that the table's moves are taken from.
+/// Points from which the table and the sheet "before" are made.
 const TRADE_SAMPLE: usize = 20_000;
 /// λ of the sheet "before", against the chosen one; the next where it has no
 /// solution.
@@ -56,8 +56,7 @@ pub(super) fn outcome(found: Found, control: &dyn Control) -> Result<Outcome, Fi
     control.progress("measuring", 88.0);
     let moves = moves(task, sheet, at);
     control.check()?;
-    let springs = springs_to(&task.points, &fit.at, &fit.weight);
-    let normal = gather(&fit.sheet.net, &springs);
+    let normal = gather(&fit.sheet.net, &sampled(task, fit));
     let before = before(task, fit, &normal).unwrap_or_else(|| fit.sheet.clone());
     let figures = |s: &Sheet| diagnose((s, &fit.energy), found.region, task);
     let (after, isophotes) = figures(sheet);
@@ -104,6 +103,15 @@ fn surface(task: &Task, sheet: &Sheet) -> Result<BSplineSurface, FitError> {
         .collect();
     BSplineSurface::from_knots(sheet.net.knots.clone(), points, None)
         .map_err(|e| FitError::Numerical(e.to_string()))
+}
+
+/// Springs to a sample of the points, as stiff together as all.
+fn sampled(task: &Task, fit: &Fit) -> Springs<3> {
+    let stride = task.points.len().div_ceil(TRADE_SAMPLE).max(1);
+    let points: Vec<_> = task.points.iter().step_by(stride).copied().collect();
+    let at: Vec<_> = fit.at.iter().step_by(stride).copied().collect();
+    let weight = fit.weight.iter().step_by(stride).map(|w| w * stride as f64);
+    springs_to(&points, &at, &weight.collect::<Vec<_>>())
 }
 
 fn moves(task: &Task, sheet: &Sheet, at: &[[f64; 2]]) -> Vec<Move> {

@@ -48,13 +48,13 @@ pub(in super::super) struct Cells {
 impl Cells {
     /// Sorts places by cell, stably.
     pub(in super::super) fn new(net: &Net, at: &[[f64; 2]]) -> Self {
-        let columns = net.knots[1].len();
+        let columns = net.spans[1].len();
         let key = |p: &[f64; 2]| {
             let [u, v] = net.clamp(*p);
-            net.knots[0].span(u) * columns + net.knots[1].span(v)
+            net.spans[0].span(u) * columns + net.spans[1].span(v)
         };
         let keys: Vec<usize> = at.par_iter().map(key).collect();
-        let mut start = vec![0usize; net.knots[0].len() * columns + 1];
+        let mut start = vec![0usize; net.spans[0].len() * columns + 1];
         for k in &keys {
             start[k + 1] += 1;
         }

@@ -197,6 +197,30 @@ pub(in super::super) fn choose<const D: usize>(
         .ok_or_else(|| FitError::Numerical("no spring stiffness gives a solvable system".into()))
 }
 
+/// Order × half bandwidth² up to which a few more factors cost nothing beside
+/// the points.
+const CHEAP: f64 = 4e7;
+
+/// The fit of all points when a sample has found λ: searched again nearby
+/// where factors are cheap, taken over where they are dear.
+///
+/// # Errors
+/// As [`choose`].
+pub(in super::super) fn last<const D: usize>(
+    normal: &Normal<D>,
+    (energy, model): (&EnvelopeMatrix, Likelihood),
+    lambda: f64,
+    control: &dyn Control,
+) -> Result<Chosen<D>, FitError> {
+    let order = energy.order();
+    let width = order.saturating_sub(1) - energy.first_column(order.saturating_sub(1));
+    if order as f64 * (width as f64).powi(2) <= CHEAP {
+        return choose(normal, energy, model, (Some(lambda), control));
+    }
+    fit_with(normal, energy, lambda, model)
+        .ok_or_else(|| FitError::Numerical("the last level has no fit".into()))
+}
+
 /// `ln det⁺ P`, up to a constant of the net: what the criterion lacks when
 /// energies are compared that leave the same polynomials free. With the mass
 /// matrix M, `ln det(P + εM) − m ln ε` tends to it for small ε.

@@ -8,21 +8,22 @@
 use super::super::fit::{Fit, energy, robust};
 use super::super::net::{Net, Sheet};
 use super::super::springs::{Springs, gather};
-use super::super::stiffness::{Chosen, Likelihood, choose, fit_with};
+use super::super::stiffness::{self, Chosen, Likelihood, choose};
 use super::super::task::Task;
-use super::levels::{self, LEVELS, SAMPLE};
+use super::levels::{self, SAMPLE, Step};
 use crate::methods::FitError;
+use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
 use rayon::prelude::*;
 
-/// Order × half bandwidth² up to which the stiffness is searched again with
-/// all the points.
-const CHEAP: f64 = 2e7;
-
-/// A level's best.
+/// What a level found.
 struct Level {
     net: Net,
+    energy: EnvelopeMatrix,
+    model: Likelihood,
     chosen: Chosen<1>,
+    /// Weights of a robust fit.
+    weight: Option<Vec<f64>>,
 }
 
 /// Fits a height field along the third axis of the frame.
@@ -36,97 +37,84 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
         weight: task.weight.clone(),
     };
     let domain = levels::domain(&all.at);
+    let lengths = domain.map(|[a, b]| b - a);
+    let density = all.weight.iter().sum::<f64>() / (lengths[0] * lengths[1]);
+    let longer = lengths[0].max(lengths[1]);
     let mut sample = thinned(&all, SAMPLE);
-    let order = levels::order(all.at.len());
-    let term = |net: &Net| {
-        let energy = energy(task.energy, (order, 1.0), net.domain());
-        let model = Likelihood {
-            free: energy.free_dimension(levels::DEGREE),
-            components: 1.0,
-        };
-        (energy.matrix(net), model)
-    };
-    let least = levels::least_gain(all.at.len());
-    let mut best: Option<Level> = None;
-    for spans in LEVELS {
-        let net = levels::net(domain, spans, task.control_points)?;
-        if best.is_some() && !levels::affordable(&net, all.at.len()) {
-            break;
-        }
-        control.progress("fitting", 5.0 + 0.2 * spans as f64);
-        let (matrix, model) = term(&net);
-        let chosen = if task.robust {
-            let r = robust(&net, &sample, (&matrix, model), control)?;
-            sample.weight = r.weight;
-            r.chosen
-        } else {
-            let near = best.as_ref().map(|b| b.chosen.lambda);
-            choose(&gather(&net, &sample), &matrix, model, (near, control))?
-        };
-        let gain = best
-            .as_ref()
-            .map_or(1.0, |b| 1.0 - (chosen.noise / b.chosen.noise).powi(2));
-        let first = best.is_none();
-        if gain >= least {
-            best = Some(Level { net, chosen });
-        }
-        if first && task.slides() {
-            let sheet = best.as_ref().map(sheet_of);
-            if let Some(sheet) = sheet {
-                level_out(&sheet, &mut all);
-                level_out(&sheet, &mut sample);
-            }
-        }
-        if gain < least || task.control_points.is_some() {
-            break;
-        }
+    let mut step = levels::first(all.at.len());
+    let mut best = level(task, (domain, step), (&sample, None), control)?;
+    if task.slides() {
+        let sheet = Sheet::of_heights(&best.net, &best.chosen.control);
+        level_out(&sheet, &mut all);
+        level_out(&sheet, &mut sample);
     }
-    let level = best.ok_or_else(|| FitError::Numerical("no level fits".into()))?;
-    finish(
-        task,
-        (level, all, sample),
-        term(&domain_net(domain, task)?).1,
-        control,
-    )
+    while let Some(finer) = levels::next(step, best.chosen.lambda, (density, longer)) {
+        let net = levels::net(domain, finer, None)?;
+        if !levels::affordable(&net, all.at.len()) || task.control_points.is_some() {
+            break;
+        }
+        control.progress("fitting", 5.0 + 0.3 * finer.spans as f64);
+        let near = (finer.space == step.space).then_some(best.chosen.lambda);
+        best = level(task, (domain, finer), (&sample, near), control)?;
+        step = finer;
+    }
+    finish(task, best, (all, &sample), control)
 }
 
-fn domain_net(domain: [[f64; 2]; 2], task: &Task) -> Result<Net, FitError> {
-    levels::net(domain, LEVELS[0], task.control_points)
-}
-
-fn sheet_of(level: &Level) -> Sheet {
-    Sheet::of_heights(&level.net, &level.chosen.control)
+/// The fit of one level to the sample.
+fn level(
+    task: &Task,
+    (domain, step): ([[f64; 2]; 2], Step),
+    (sample, near): (&Springs<1>, Option<f64>),
+    control: &dyn Control,
+) -> Result<Level, FitError> {
+    let net = levels::net(domain, step, task.control_points)?;
+    let term = energy(task.energy, (step.space.order, 1.0), net.domain());
+    let model = Likelihood {
+        free: term.free_dimension(net.degree()),
+        components: 1.0,
+    };
+    let energy = term.matrix(&net);
+    let (chosen, weight) = if task.robust {
+        let r = robust(&net, sample, (&energy, model), control)?;
+        (r.chosen, Some(r.weight))
+    } else {
+        let normal = gather(&net, sample);
+        (choose(&normal, &energy, model, (near, control))?, None)
+    };
+    Ok(Level {
+        net,
+        energy,
+        model,
+        chosen,
+        weight,
+    })
 }
 
 /// The last fit, with all points.
 fn finish(
     task: &Task,
-    (level, all, sample): (Level, Springs<1>, Springs<1>),
-    model: Likelihood,
+    level: Level,
+    (all, sample): (Springs<1>, &Springs<1>),
     control: &dyn Control,
 ) -> Result<Fit, FitError> {
-    let net = level.net;
-    let order = levels::order(all.at.len());
-    let matrix = energy(task.energy, (order, 1.0), net.domain()).matrix(&net);
-    let mut weight = all.weight.clone();
-    let chosen = if sample.at.len() == all.at.len() {
-        weight = sample.weight;
-        level.chosen
+    let Level {
+        net,
+        energy,
+        model,
+        chosen,
+        weight,
+    } = level;
+    let (chosen, weight) = if sample.at.len() == all.at.len() && task.robust {
+        (chosen, weight.unwrap_or(all.weight))
     } else if task.robust {
-        let r = robust(&net, &all, (&matrix, model), control)?;
-        weight = r.weight;
-        r.chosen
+        let r = robust(&net, &all, (&energy, model), control)?;
+        (r.chosen, r.weight)
     } else {
-        let normal = gather(&net, &all);
         control.check()?;
-        let cost = net.len() as f64 * (net.half_bandwidth() as f64).powi(2);
-        let near = level.chosen.lambda;
-        if cost <= CHEAP {
-            choose(&normal, &matrix, model, (Some(near), control))?
-        } else {
-            fit_with(&normal, &matrix, near, model)
-                .ok_or_else(|| FitError::Numerical("the last level has no fit".into()))?
-        }
+        let normal = gather(&net, &all);
+        let last = stiffness::last(&normal, (&energy, model), chosen.lambda, control)?;
+        (last, all.weight)
     };
     Ok(Fit {
         sheet: Sheet::of_heights(&net, &chosen.control),
@@ -134,7 +122,7 @@ fn finish(
         lambda: chosen.lambda,
         noise: chosen.noise,
         weight,
-        energy: matrix,
+        energy,
         model,
     })
 }

@@ -1,38 +1,96 @@
-//! Nets from coarse to fine over a rectangle, and how many points each level
-//! looks at.
+//! Nets from coarse to fine over a rectangle: how fine, and of which degree.
+//!
+//! Springs of stiffness 1 at density ρ and an energy of order m with weight λ
+//! pass waves of wave number k by 1/(1 + λk²ᵐ/ρ). Waves shorter than
+//! 2π(λ/ρ)^(1/2m) are smoothed away, so that a net whose spans are half as
+//! long carries all that is left: finer ones change nothing. Each level gives
+//! a λ, which tells how fine the next has to be.
 
 use super::super::net::Net;
 use crate::geometry::Knots;
 use crate::methods::FitError;
 
-/// Degree of scattered fits: sixteen control points a place.
-pub(in super::super) const DEGREE: usize = 3;
-/// Spans along the longer side, level by level.
-pub(in super::super) const LEVELS: [usize; 5] = [8, 16, 32, 64, 96];
+/// Degree of the net and order of its energy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in super::super) struct Space {
+    pub(in super::super) degree: usize,
+    pub(in super::super) order: usize,
+}
+
+/// For sheets that are smooth on the scale of the net: converges fastest.
+pub(in super::super) const SMOOTH: Space = Space {
+    degree: 5,
+    order: 4,
+};
+/// For sheets with detail on the scale of the net (ground, knuckles).
+pub(in super::super) const ROUGH: Space = Space {
+    degree: 3,
+    order: 3,
+};
+/// For a handful of points.
+pub(in super::super) const SPARSE: Space = Space {
+    degree: 3,
+    order: 2,
+};
+/// Fewer points than this are a handful: fewer than thrice what the energy of
+/// order 4 leaves free.
+const HANDFUL: usize = 30;
+/// A sheet that wants more spans than this is not smooth.
+const SMOOTH_SPANS: f64 = 40.0;
+
+/// Spans along the longer side of the first level.
+pub(in super::super) const FIRST: usize = 10;
+/// Most spans: the matrix of a square sheet is then factored in a tenth of a
+/// second.
+pub(in super::super) const MOST: usize = 96;
+/// Growth from level to level, at least and at most.
+const GROWTH: [f64; 2] = [1.5, 3.0];
+/// Spans a half wave that passes.
+const SPANS_A_HALF_WAVE: f64 = 0.7;
 /// Fewest spans along the shorter side.
 const FEWEST_SPANS: usize = 3;
-/// Points that coarse levels look at: enough for thirty a control point.
-pub(in super::super) const SAMPLE: usize = 30_000;
+/// Points that coarse levels look at: enough for dozens a control point.
+pub(in super::super) const SAMPLE: usize = 20_000;
 /// Points a control point that make the next level worth a look.
 const POINTS_A_CONTROL: f64 = 0.7;
-/// A level is worth its cost when it lowers the variance of the noise by more
-/// than this many points' worth of it (their likelihood ratio) ...
-const WORTH: f64 = 20.0;
-/// ... within these shares: below, the sample cannot tell; above, anybody can.
-const SHARES: [f64; 2] = [3e-4, 1e-2];
-
-/// Least gain, as share of the noise's variance, for which a finer level is
-/// taken.
-pub(in super::super) fn least_gain(points: usize) -> f64 {
-    (WORTH / points.max(1) as f64).clamp(SHARES[0], SHARES[1])
-}
 /// The net goes past the outermost point by this share of the longer side.
 const PAST: f64 = 0.005;
 
-/// Order of the isotropic energy: change of curvature, or bending where there
-/// are hardly more points than it leaves free.
-pub(in super::super) fn order(points: usize) -> usize {
-    if points >= 30 { 3 } else { 2 }
+/// One step of the way from coarse to fine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in super::super) struct Step {
+    pub(in super::super) space: Space,
+    pub(in super::super) spans: usize,
+}
+
+/// The first level.
+pub(in super::super) fn first(points: usize) -> Step {
+    Step {
+        space: if points < HANDFUL { SPARSE } else { SMOOTH },
+        spans: FIRST,
+    }
+}
+
+/// The level after `now`, which found λ for springs of the given density
+/// (weight per unit of area) on a sheet whose longer side is `length`; `None`
+/// where `now` is fine enough.
+pub(in super::super) fn next(
+    now: Step,
+    lambda: f64,
+    (density, length): (f64, f64),
+) -> Option<Step> {
+    let wave = (density / lambda).powf(0.5 / now.space.order as f64);
+    let wanted = SPANS_A_HALF_WAVE * length * wave / std::f64::consts::PI;
+    if wanted <= now.spans as f64 || now.spans >= MOST {
+        return None;
+    }
+    let low = GROWTH[0] * now.spans as f64;
+    let spans = wanted.clamp(low, GROWTH[1] * now.spans as f64) as usize;
+    let rough = now.space == SMOOTH && wanted > SMOOTH_SPANS && now.spans > FIRST;
+    Some(Step {
+        space: if rough { ROUGH } else { now.space },
+        spans: spans.min(MOST),
+    })
 }
 
 /// The rectangle of places with its margin.
@@ -54,22 +112,23 @@ pub(in super::super) fn domain(at: &[[f64; 2]]) -> [[f64; 2]; 2] {
 /// [`FitError::Numerical`] for a domain without extent.
 pub(in super::super) fn net(
     domain: [[f64; 2]; 2],
-    spans: usize,
+    step: Step,
     wanted: Option<[usize; 2]>,
 ) -> Result<Net, FitError> {
+    let degree = step.space.degree;
     let length = domain.map(|[a, b]| b - a);
     let longer = length[0].max(length[1]);
     let count = |k: usize| match wanted {
-        Some(w) => w[k].saturating_sub(DEGREE).max(1),
-        None => ((spans as f64 * length[k] / longer).round() as usize).max(FEWEST_SPANS),
+        Some(w) => w[k].saturating_sub(degree).max(1),
+        None => ((step.spans as f64 * length[k] / longer).round() as usize).max(FEWEST_SPANS),
     };
     let knots = |k: usize| {
-        Knots::uniform(DEGREE, domain[k], count(k)).map_err(|e| FitError::Numerical(e.to_string()))
+        Knots::uniform(degree, domain[k], count(k)).map_err(|e| FitError::Numerical(e.to_string()))
     };
     Ok(Net::new([knots(0)?, knots(1)?]))
 }
 
-/// Whether a net of a level is not too fine for so many points.
+/// Whether a net is not too fine for so many points.
 pub(in super::super) fn affordable(net: &Net, points: usize) -> bool {
     net.len() as f64 * POINTS_A_CONTROL <= points as f64
 }

@@ -10,20 +10,18 @@ use super::super::fit::{Fit, energy, median_scale, places, springs_to};
 use super::super::input::issue;
 use super::super::net::{Net, Sheet};
 use super::super::springs::gather;
-use super::super::stiffness::{Chosen, Likelihood, choose, fit_with};
+use super::super::stiffness::{self, Chosen, Likelihood, choose};
 use super::super::task::Task;
 use super::geodesics::flat_map;
-use super::levels::{self, LEVELS, SAMPLE};
+use super::levels::{self, SAMPLE, Step};
 use super::voxels::Nodes;
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
 use nalgebra::Vector3;
 
-/// Spans of the sheet through the nodes.
-const NODE_SPANS: usize = 10;
 /// Rounds of feet and fits: on the nodes, on a level, at the end.
-const ROUNDS: [usize; 3] = [4, 2, 2];
+const ROUNDS: [usize; 3] = [3, 1, 1];
 /// Gauss–Newton steps a round: the last round's feet are the start.
 const FOOT_STEPS: usize = 4;
 /// Residuals of so many σ lose their pull in a robust fit.
@@ -66,10 +64,8 @@ pub(in super::super) fn fit(
             "not-a-sheet",
             "the points cannot be unrolled into one sheet: they close all round, branch, or have \
              many points off the sheet",
-            Some(
-                "cut them along a line, for example by leaving out a sector, and give each sheet \
-                  by itself",
-            ),
+            Some("cut them along a line, for example by leaving out a sector, and give each sheet \
+                  by itself"),
         )])
     })?;
     control.check()?;
@@ -79,33 +75,29 @@ pub(in super::super) fn fit(
         at: map.clone(),
         weight: nodes.count.iter().map(|n| *n as f64).collect(),
     };
-    let mut level = first(task, domain, &cloud, control)?;
+    let mut step = levels::first(task.points.len());
+    let mut level = on_level(task, (domain, step), &cloud, (None, control))?;
     for _ in 0..ROUNDS[0] {
-        refine(task, &mut level, &mut cloud, (true, control))?;
+        refine(task, &mut level, &mut cloud, (false, control))?;
     }
     let stride = task.points.len().div_ceil(SAMPLE).max(1);
     let mut sample = seated(task, nodes, (&level.sheet(), &cloud.at), stride);
-    for _ in 0..ROUNDS[1] {
-        refine(task, &mut level, &mut sample, (true, control))?;
-    }
-    for spans in LEVELS.into_iter().filter(|s| *s > NODE_SPANS) {
-        control.progress("fitting", 5.0 + 0.2 * spans as f64);
-        let net = levels::net(domain, spans, task.control_points)?;
-        if !levels::affordable(&net, task.points.len()) {
+    refine(task, &mut level, &mut sample, (true, control))?;
+    let lengths = domain.map(|[a, b]| b - a);
+    let density = task.weight.iter().sum::<f64>() / (lengths[0] * lengths[1]);
+    let longer = lengths[0].max(lengths[1]);
+    while let Some(finer) = levels::next(step, level.chosen.lambda, (density, longer)) {
+        let net = levels::net(domain, finer, None)?;
+        if !levels::affordable(&net, task.points.len()) || task.control_points.is_some() {
             break;
         }
-        let mut finer = on_net(task, net, &sample, (Some(level.chosen.lambda), control))?;
+        control.progress("fitting", 5.0 + 0.3 * finer.spans as f64);
+        let near = (finer.space == step.space).then_some(level.chosen.lambda);
+        level = on_level(task, (domain, finer), &sample, (near, control))?;
         for _ in 0..ROUNDS[1] {
-            refine(task, &mut finer, &mut sample, (true, control))?;
+            refine(task, &mut level, &mut sample, (true, control))?;
         }
-        let gain = 1.0 - (finer.chosen.noise / level.chosen.noise).powi(2);
-        if gain < levels::least_gain(task.points.len()) {
-            break;
-        }
-        level = finer;
-        if task.control_points.is_some() {
-            break;
-        }
+        step = finer;
     }
     finish(task, level, (sample, nodes, &cloud.at), control)
 }
@@ -137,29 +129,17 @@ fn finish(
     })
 }
 
-fn first(
+/// The fit of one level at given places.
+fn on_level(
     task: &Task,
-    domain: [[f64; 2]; 2],
-    cloud: &Cloud,
-    control: &dyn Control,
-) -> Result<Level, FitError> {
-    let net = levels::net(domain, NODE_SPANS, None)?;
-    on_net(task, net, cloud, (None, control))
-}
-
-fn on_net(
-    task: &Task,
-    net: Net,
+    (domain, step): ([[f64; 2]; 2], Step),
     cloud: &Cloud,
     (near, control): (Option<f64>, &dyn Control),
 ) -> Result<Level, FitError> {
-    let term = energy(
-        task.energy,
-        (levels::order(task.points.len()), 1.0),
-        net.domain(),
-    );
+    let net = levels::net(domain, step, task.control_points)?;
+    let term = energy(task.energy, (step.space.order, 1.0), net.domain());
     let model = Likelihood {
-        free: term.free_dimension(levels::DEGREE),
+        free: term.free_dimension(net.degree()),
         components: 1.0,
     };
     let energy = term.matrix(&net);
@@ -198,14 +178,18 @@ fn refine(
     level.chosen = if search {
         choose(&normal, &level.energy, level.model, (Some(near), control))?
     } else {
-        fit_with(&normal, &level.energy, near, level.model)
-            .ok_or_else(|| FitError::Numerical("the level has no fit".into()))?
+        stiffness::last(&normal, (&level.energy, level.model), near, control)?
     };
     Ok(())
 }
 
 /// Every `stride`-th point with its foot on a sheet, from its node's place.
-fn seated(task: &Task, nodes: &Nodes, (sheet, map): (&Sheet, &[[f64; 2]]), stride: usize) -> Cloud {
+fn seated(
+    task: &Task,
+    nodes: &Nodes,
+    (sheet, map): (&Sheet, &[[f64; 2]]),
+    stride: usize,
+) -> Cloud {
     let points: Vec<Vector3<f64>> = task.points.iter().step_by(stride).copied().collect();
     let starts: Vec<[f64; 2]> = points
         .iter()
