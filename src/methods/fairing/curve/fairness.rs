@@ -41,17 +41,23 @@ struct Local {
 pub(super) struct Gauge<'a> {
     curve: &'a BSplineCurve,
     plane: Option<Vector3<f64>>,
+    closed: bool,
     spans: Vec<[f64; 2]>,
 }
 
 impl<'a> Gauge<'a> {
-    /// Prepares a curve.
-    pub(super) fn new(curve: &'a BSplineCurve, plane: Option<Vector3<f64>>) -> Self {
+    /// Prepares a curve; of a `closed` one extrema are counted around.
+    pub(super) fn new(
+        curve: &'a BSplineCurve,
+        plane: Option<Vector3<f64>>,
+        closed: bool,
+    ) -> Self {
         let breaks = curve.knot_vector().breakpoints();
         let spans = breaks.windows(2).map(|w| [w[0], w[1]]).collect();
         Gauge {
             curve,
             plane,
+            closed,
             spans,
         }
     }
@@ -112,11 +118,7 @@ impl<'a> Gauge<'a> {
         Fairness {
             curvature_variation: variation,
             bending,
-            extrema: if bent {
-                extrema(&curvatures, PROMINENT * range)
-            } else {
-                0
-            },
+            extrema: if bent { self.extrema(&curvatures, PROMINENT * range) } else { 0 },
             inflections: if bent && self.plane.is_some() {
                 sign_changes(&curvatures, SIGNLESS * amount)
             } else {
@@ -125,6 +127,12 @@ impl<'a> Gauge<'a> {
             max_curvature: amount,
             length,
         }
+    }
+
+    /// Extrema, the one at which a closed curve is opened included.
+    fn extrema(&self, curvatures: &[f64], h: f64) -> usize {
+        let inside = extrema(curvatures, h);
+        inside + usize::from(self.closed && inside > 0)
     }
 
     fn curvatures(&self) -> Vec<f64> {
@@ -136,6 +144,13 @@ impl<'a> Gauge<'a> {
                 let u = a + (b - a) * (k as f64 + 0.5) / each as f64;
                 out.push(self.at(u).curvature);
             }
+        }
+        if self.closed {
+            // From the greatest around to it again, which then counts once.
+            let greatest = |a: &usize, b: &usize| out[*a].total_cmp(&out[*b]);
+            let start = (0..out.len()).max_by(greatest).unwrap_or(0);
+            out.rotate_left(start);
+            out.extend(out.first().copied());
         }
         out
     }

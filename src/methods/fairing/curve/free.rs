@@ -50,12 +50,31 @@ pub(super) fn first_shape<const D: usize>(
 ) -> Option<Shape<D>> {
     let gram = springs.gram(&space, &vec![Vector::zeros(); space.unknowns()]);
     let model = Offsets::linear(&space, &FIRST_ENERGY, &gram);
-    let choice = model.choose(None);
-    let (x, ..) = model.solve(choice.stiffness)?;
+    let (x, ..) = model.solve(model.choose(None).stiffness)?;
+    Some(shape_of(space, x, quadratic))
+}
+
+/// The same, so soft that it all but passes through the points.
+pub(super) fn soft_shape<const D: usize>(
+    space: Space,
+    springs: &Springs<D>,
+    quadratic: Option<Quadratic>,
+) -> Option<Shape<D>> {
+    let gram = springs.gram(&space, &vec![Vector::zeros(); space.unknowns()]);
+    let model = Offsets::linear(&space, &FIRST_ENERGY, &gram);
+    let (x, ..) = model.solve(model.soft().stiffness)?;
+    Some(shape_of(space, x, quadratic))
+}
+
+fn shape_of<const D: usize>(
+    space: Space,
+    x: Vec<Vector<D>>,
+    quadratic: Option<Quadratic>,
+) -> Shape<D> {
     let energy = Energy::new(&space, quadratic);
     let mut shape = Shape { space, x, energy };
     shape.relieve();
-    Some(shape)
+    shape
 }
 
 /// Fits `shape` to its springs; the stiffness comes from the points.
@@ -93,6 +112,7 @@ pub(super) fn settle<const D: usize>(
             break;
         }
     }
+    springs.refresh(&shape.space, &shape.x, reach);
     Ok(choice.expect("there is at least one round"))
 }
 

@@ -13,7 +13,7 @@ use nalgebra::SMatrix;
 const HOLD: f64 = 1e3;
 /// Weight of straightness against the same: no multiplier, but enough that
 /// what is left of a bend cannot be seen.
-const STRAIGHT: f64 = 1e6;
+const STRAIGHT: f64 = 1e2;
 
 /// One condition at a parameter.
 #[derive(Debug, Clone)]
@@ -82,8 +82,17 @@ impl<const D: usize> Holds<D> {
             let of = |k: usize| of_each[space.unknown(basis.first + k)];
             (0..basis.count).map(of).fold(f64::MIN_POSITIVE, f64::max)
         };
+        let [a, b] = space.domain();
+        let span = (b - a) / space.unknowns() as f64;
         for hold in &mut self.holds {
-            let weight = HOLD * stiffness * local(hold.u);
+            // A tangent turns by the move of a coefficient over a span, a
+            // curvature by that over its square.
+            let order = match hold.condition {
+                Condition::Place(..) => 0,
+                Condition::Direction(_) => 2,
+                Condition::Curvature(_) => 4,
+            };
+            let weight = HOLD * stiffness * local(hold.u) * span.powi(order);
             hold.shift *= hold.weight / weight;
             hold.weight = weight;
         }
@@ -211,15 +220,15 @@ fn push<const D: usize, const R: usize>(
     }
 }
 
-/// r′ across the wanted direction, and the backward part of r′ if it points
-/// the wrong way.
-fn sideways<const D: usize>(d: &[Vector<D>; 2], t: &Vector<D>) -> Residual<D> {
+/// t − wanted for the unit tangent t: not r′ across the wanted direction,
+/// which a curve can also make small by standing still.
+fn sideways<const D: usize>(d: &[Vector<D>; 2], wanted: &Vector<D>) -> Residual<D> {
     let one = SMatrix::<f64, D, D>::identity();
-    let along = t * t.transpose();
-    let map = if d[0].dot(t) < 0.0 { one } else { one - along };
+    let speed = d[0].norm().max(f64::MIN_POSITIVE);
+    let t = d[0] / speed;
     Residual {
-        value: map * d[0],
-        by: [map, SMatrix::zeros()],
+        value: t - wanted,
+        by: [(one - t * t.transpose()) / speed, SMatrix::zeros()],
         at: Vector::zeros(),
     }
 }

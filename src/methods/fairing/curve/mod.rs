@@ -55,15 +55,18 @@ fn fit_in<const D: usize>(
     control.progress("ordering", 5.0);
     let traced = if request.ordered {
         let closed = prepared.closed == Some(true);
-        let (parameters, domain) = start::ordered_parameters(&task.points, closed);
+        let doubtful = start::standing_out(&task.points, closed);
+        let (parameters, domain) = start::parameters_without(&task.points, closed, &doubtful);
         Traced {
             parameters,
             domain,
             closed,
+            doubtful,
         }
     } else {
         let degree = input::degree_of(&request.options);
-        trace::trace(&task.points, degree, request.closed, control)?
+        let hints = (request.closed, request.options.robust);
+        trace::trace(&task.points, degree, hints, control)?
     };
     control.progress("fairing", 15.0);
     let solved = match request.options.solver {

@@ -20,6 +20,8 @@ pub(super) const MOST_SPANS: usize = 4096;
 const CELLS: usize = 4;
 /// Points a cell must have for its mean to say something.
 const LEAST_IN_CELL: usize = 2;
+/// Points farther off than this many deviations are no evidence of shape.
+const FAR: f64 = 5.0;
 /// Standard deviations that the sum over cells may exceed its expectation by.
 const DEVIATES: f64 = 4.0;
 
@@ -37,7 +39,7 @@ pub(super) fn misses_shape<const D: usize>(
     for ((u, e), w) in springs.feet.iter().zip(residuals).zip(&springs.weights) {
         let k = ((u - a) / (b - a) * cells as f64) as usize;
         let cell = &mut sums[k.min(cells - 1)];
-        if *w > 0.0 {
+        if *w > 0.0 && e.norm() < FAR * noise {
             cell.0 += e;
             cell.1 += 1.0;
         }

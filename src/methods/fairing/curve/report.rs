@@ -39,7 +39,7 @@ pub(super) fn outcome<const D: usize>(
     let unit = shape.space.curve(&shape.x).map_err(broken)?;
     let curve = in_user_scale::<D>(&unit, prepared).map_err(broken)?;
     let plane = (D == 2).then(|| prepared.frame.leave_direction(&Vector3::z()));
-    let gauge = Gauge::new(&curve, plane);
+    let gauge = Gauge::new(&curve, plane, traced.closed);
     let moves = moves(request, prepared, solved, &unit, control)?;
     let figures = figures(&moves);
     let within = moves.iter().all(|m| keeps(m, prepared.frame.size));
@@ -305,5 +305,5 @@ fn before(
     points.dedup();
     let degree = 3.min(points.len().checked_sub(1)?).max(1);
     let curve = interpolate(&points, degree, Parametrization::ChordLength).ok()?;
-    Some(Gauge::new(&curve, plane).fairness())
+    Some(Gauge::new(&curve, plane, traced.closed).fairness())
 }

@@ -31,6 +31,11 @@ const SURE: f64 = 0.01;
 const MOST_SHARE: f64 = 0.15;
 /// Steps of ln λ at which deletions are compared, from the likeliest.
 const LOG_STEPS: [f64; 9] = [-4.0, -2.0, 0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0];
+/// Variance of a point about a prediction of it, against that of the noise:
+/// its own and, at most about as much, that of the curve.
+const PREDICTED: f64 = 2.0;
+/// Noise below this is rounding, unit scale.
+const LEAST_NOISE: f64 = 1e-9;
 /// Rounds of the estimate by medians.
 const ROUNDS: usize = 8;
 /// A slip must leave the fit without it by this many deviations.
@@ -56,17 +61,27 @@ pub(super) struct Suspect<const D: usize> {
 pub(super) fn suspects<const D: usize>(
     shape: &Shape<D>,
     springs: &Springs<D>,
-    choice: &Choice,
+    (choice, doubtful): (&Choice, &[usize]),
     control: &dyn Control,
 ) -> Result<Vec<Suspect<D>>, Stop> {
     let (mut shape, mut springs) = (shape.clone(), springs.clone());
     let given = springs.weights.clone();
     let count = given.iter().filter(|w| **w > 0.0).count();
-    let set_aside = if count <= TRY_EACH {
+    let mut set_aside = if count <= TRY_EACH {
         one_by_one(&shape, &mut springs, choice, control)?
     } else {
         by_medians(&mut shape, &mut springs, control)?
     };
+    for i in doubtful {
+        // Not in the fit: its distance is all its own, as a prediction's.
+        let e = springs.points[*i] - shape.space.point(&shape.x, springs.feet[*i]);
+        let ratio = e.norm_squared() / (D - 1) as f64 / choice.noise.max(LEAST_NOISE).powi(2);
+        let freedom = (count as f64 - choice.degrees_of_freedom / (D - 1) as f64).max(1.0);
+        let chance = count as f64 * tail(ratio / PREDICTED, D - 1, freedom);
+        if chance < SURE {
+            set_aside.push((*i, chance));
+        }
+    }
     let set_aside = alone(set_aside, &springs);
     if set_aside.is_empty() {
         return Ok(Vec::new());

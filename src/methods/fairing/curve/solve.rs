@@ -1,7 +1,7 @@
 //! From a task to a fair curve: start, free fit, net, slips, tolerances.
 
 use super::energy::{Energy, Quadratic};
-use super::free::{HELD, Shape, first_shape, settle};
+use super::free::{HELD, Shape, first_shape, settle, soft_shape};
 use super::holds::{Condition, Holds};
 use super::input::{Task, degree_of};
 use super::net::{FIRST_SPANS, MOST_SPANS, misses_shape, split, transfer};
@@ -24,6 +24,8 @@ pub(super) struct Traced {
     pub(super) domain: [f64; 2],
     /// Whether the curve is closed.
     pub(super) closed: bool,
+    /// Points that the first look takes for slips.
+    pub(super) doubtful: Vec<usize>,
 }
 
 /// A fair curve with all that is known about it, in unit scale.
@@ -77,21 +79,18 @@ pub(super) fn solve<const D: usize>(
         traced,
         options: &request.options,
         control,
-        quadratic: request
-            .options
-            .energy
-            .map(|e| [e.tension, e.bending, e.jerk]),
+        quadratic: request.options.energy.map(|e| [e.tension, e.bending, e.jerk]),
     };
-    let mut fit = bench.free()?;
-    control.progress("slips", 50.0);
-    let suspects = suspects(&fit.shape, &fit.springs, &fit.choice, control)?;
+    let (mut fit, suspects) = bench.free()?;
     let mut tolerances = task.tolerances.clone();
-    if request.options.robust && !suspects.is_empty() {
+    if request.options.robust {
         for s in &suspects {
-            fit.springs.weights[s.index] = 0.0;
             tolerances[s.index] = f64::INFINITY;
         }
-        fit.choice = settle(&mut fit.shape, &mut fit.springs, &mut fit.holds, control)?;
+    } else if !suspects.is_empty() {
+        // The slips are told but hold the curve as all points do.
+        let spans = fit.shape.space.spans().len();
+        fit = bench.fit_with(spans, fit.net, &[])?;
     }
     control.progress("fairing", 60.0);
     let mut solved = Solved {
@@ -120,6 +119,13 @@ pub(super) struct Free<const D: usize> {
     pub(super) holds: Holds<D>,
     pub(super) choice: Choice,
     pub(super) net: &'static str,
+}
+
+/// The points of slips, sorted.
+fn indices<const D: usize>(found: &[Suspect<D>]) -> Vec<usize> {
+    let mut all: Vec<usize> = found.iter().map(|s| s.index).collect();
+    all.sort_unstable();
+    all
 }
 
 /// The bounds of a walk: held points have a hold instead.
@@ -165,8 +171,11 @@ impl<const D: usize> Free<D> {
 }
 
 impl<const D: usize> Bench<'_, D> {
-    /// The fit without tolerances, with as many spans as the shape needs.
-    fn free(&self) -> Result<Free<D>, FitError> {
+    /// The fit without tolerances and without slips, with as many spans as the
+    /// shape needs. Slips first, as they look like shape to a rich spline.
+    fn free(&self) -> Result<(Free<D>, Vec<Suspect<D>>), FitError> {
+        /// Times that slips are sought anew without those found.
+        const LOOKS: usize = 4;
         let most = self.most_spans();
         let (mut spans, mut net) = match self.asked_spans() {
             Some(n) => (n, "asked"),
@@ -175,20 +184,36 @@ impl<const D: usize> Bench<'_, D> {
             }
             None => (FIRST_SPANS, "enough for the shape"),
         };
-        loop {
-            self.control.check()?;
-            let fit = self.fit_with(spans, net)?;
-            let residuals = fit.springs.residuals(&fit.shape.space, &fit.shape.x);
-            let poor =
-                fit.choice.noise > 0.0 && misses_shape(&fit.shape.space, &fit.springs, &residuals);
-            if net == "asked" || spans >= most || !poor {
-                return Ok(fit);
+        let mut without = self.traced.doubtful.clone();
+        let mut fit = self.fit_with(spans, net, &without)?;
+        let mut found = self.suspects(&fit, &without)?;
+        for _ in 0..LOOKS {
+            let next = indices(&found);
+            if next == without {
+                break;
             }
+            without = next;
+            fit = self.fit_with(spans, net, &without)?;
+            found = self.suspects(&fit, &without)?;
+        }
+        while net != "asked" && spans < most && self.is_poor(&fit) {
             spans = (2 * spans).min(most);
             if spans == most {
                 net = "one a point";
             }
+            fit = self.fit_with(spans, net, &without)?;
+            found = self.suspects(&fit, &without)?;
         }
+        Ok((fit, found))
+    }
+
+    fn suspects(&self, fit: &Free<D>, without: &[usize]) -> Result<Vec<Suspect<D>>, Stop> {
+        suspects(&fit.shape, &fit.springs, (&fit.choice, without), self.control)
+    }
+
+    fn is_poor(&self, fit: &Free<D>) -> bool {
+        let residuals = fit.springs.residuals(&fit.shape.space, &fit.shape.x);
+        fit.choice.noise > 0.0 && misses_shape(&fit.shape.space, &fit.springs, &residuals)
     }
 
     fn intervals(&self) -> usize {
@@ -197,11 +222,7 @@ impl<const D: usize> Bench<'_, D> {
     }
 
     fn most_spans(&self) -> usize {
-        let least = if self.traced.closed {
-            2 * self.degree() + 2
-        } else {
-            1
-        };
+        let least = if self.traced.closed { 2 * self.degree() + 2 } else { 1 };
         self.intervals().clamp(least, MOST_SPANS)
     }
 
@@ -223,22 +244,27 @@ impl<const D: usize> Bench<'_, D> {
     }
 
     /// The free fit in a space of `spans` spans.
-    fn fit_with(&self, spans: usize, net: &'static str) -> Result<Free<D>, FitError> {
+    fn fit_with(
+        &self,
+        spans: usize,
+        net: &'static str,
+        without: &[usize],
+    ) -> Result<Free<D>, FitError> {
         /// What may be left of the holds before the energy is held unfit.
         const FAR: f64 = 1e-7;
-        let (fit, unheld) = self.fit_by(spans, net, self.quadratic)?;
+        let (fit, unheld) = self.fit_by(spans, (net, without), self.quadratic)?;
         if self.quadratic.is_some() || unheld <= FAR {
             return Ok(fit);
         }
         // Held points so rough that ∫ κ′² ds finds no way to them: the
         // quadratic energy always does.
-        Ok(self.fit_by(spans, net, Some(PLAIN))?.0)
+        Ok(self.fit_by(spans, (net, without), Some(PLAIN))?.0)
     }
 
     fn fit_by(
         &self,
         spans: usize,
-        net: &'static str,
+        (net, without): (&'static str, &[usize]),
         quadratic: Option<Quadratic>,
     ) -> Result<(Free<D>, f64), FitError> {
         /// Rounds of the multipliers beyond those of the fit.
@@ -247,7 +273,7 @@ impl<const D: usize> Bench<'_, D> {
         let data = (&t.parameters[..], t.domain, t.closed);
         let space = space_for(self.degree(), data, spans, &self.breaks())
             .map_err(|e| FitError::Numerical(e.to_string()))?;
-        let mut springs = self.springs();
+        let mut springs = self.springs(without);
         let broken = || FitError::Numerical("the points do not determine a curve".into());
         let mut shape = first_shape(space, &springs, quadratic).ok_or_else(broken)?;
         let held = self.held();
@@ -285,14 +311,17 @@ impl<const D: usize> Bench<'_, D> {
         Ok((fit, unheld))
     }
 
-    fn springs(&self) -> Springs<D> {
+    fn springs(&self, without: &[usize]) -> Springs<D> {
         let mut springs = Springs::new(
             self.task.points.clone(),
             self.task.weights.clone(),
             self.traced.parameters.clone(),
             self.task.metric,
         );
-        springs.pin(self.ends());
+        for i in without {
+            springs.weights[*i] = 0.0;
+        }
+        springs.pin(self.ends(without));
         springs.pin(self.task.knuckles.iter().copied());
         for [a, b] in &self.task.straight {
             springs.pin([*a, *b]);
@@ -301,18 +330,16 @@ impl<const D: usize> Bench<'_, D> {
     }
 
     /// The points at the two ends of an open curve.
-    fn ends(&self) -> Vec<usize> {
+    fn ends(&self, without: &[usize]) -> Vec<usize> {
         if self.traced.closed {
             return Vec::new();
         }
         let u = &self.traced.parameters;
         let by = |a: &usize, b: &usize| u[*a].total_cmp(&u[*b]);
-        let all = || 0..u.len();
-        all()
-            .min_by(by)
-            .into_iter()
-            .chain(all().max_by(by))
-            .collect()
+        let mut out = vec![false; u.len()];
+        without.iter().for_each(|i| out[*i] = true);
+        let all = || (0..u.len()).filter(|i| !out[*i]);
+        all().min_by(by).into_iter().chain(all().max_by(by)).collect()
     }
 
     /// Points that must stay.
@@ -327,21 +354,8 @@ impl<const D: usize> Bench<'_, D> {
         let [a, b] = self.traced.domain;
         let inside = |t: &f64| *t > a && *t < b;
         Breaks {
-            corners: self
-                .task
-                .knuckles
-                .iter()
-                .map(|i| u[*i])
-                .filter(inside)
-                .collect(),
-            joints: self
-                .task
-                .straight
-                .iter()
-                .flatten()
-                .map(|i| u[*i])
-                .filter(inside)
-                .collect(),
+            corners: self.task.knuckles.iter().map(|i| u[*i]).filter(inside).collect(),
+            joints: self.task.straight.iter().flatten().map(|i| u[*i]).filter(inside).collect(),
         }
     }
 
@@ -364,7 +378,7 @@ impl<const D: usize> Bench<'_, D> {
         if t.metric.iter().any(|m| *m != 1.0) {
             // Ends have no foot to find: they keep the coordinates that are
             // not free.
-            for i in self.ends().into_iter().filter(|i| !held.contains(i)) {
+            for i in self.ends(&self.traced.doubtful).into_iter().filter(|i| !held.contains(i)) {
                 holds.push(u[i], Condition::Place(t.points[i], t.metric), false);
             }
         }
@@ -380,6 +394,13 @@ impl<const D: usize> Bench<'_, D> {
         const MOST_SPLITS: usize = 10;
         let limits = limits(&solved.tolerances);
         let mut used = self.approach(&mut fit, &limits)?;
+        if used >= 1.0 && fit.net != "asked" {
+            let mut near = self.rough(&fit)?;
+            let other = self.approach(&mut near, &limits)?;
+            if other < used {
+                (fit, used) = (near, other);
+            }
+        }
         for _ in 0..MOST_SPLITS {
             // Beyond a span a point no spline helps, only another tolerance.
             let full = fit.shape.space.unknowns() > self.most_spans() + self.degree();
@@ -396,7 +417,7 @@ impl<const D: usize> Bench<'_, D> {
             return Ok(());
         }
         let inner = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
-        let best = self.walk(&mut fit, &limits)?;
+        let best = self.walk_with_feet(&mut fit, &limits)?;
         solved.duals = best.duals;
         solved.gap = Some(best.gap);
         solved.steps = best.steps;
@@ -405,6 +426,29 @@ impl<const D: usize> Bench<'_, D> {
         solved.springs = fit.springs.clone();
         (fit.shape, fit.springs, fit.holds) = inner;
         self.trade_off(fit, solved)
+    }
+
+    /// The other end from which to enter the bounds: the curve of ∫ |r‴|² du
+    /// nearly through the points, instead of the stiffest they allow.
+    fn rough(&self, fit: &Free<D>) -> Result<Free<D>, FitError> {
+        let spans = self.most_spans().max(fit.shape.space.spans().len());
+        let t = self.traced;
+        let data = (&t.parameters[..], t.domain, t.closed);
+        let space = space_for(self.degree(), data, spans.min(MOST_SPANS), &self.breaks())
+            .map_err(|e| FitError::Numerical(e.to_string()))?;
+        let mut springs = fit.springs.clone();
+        springs.feet.clone_from(&t.parameters);
+        let broken = || FitError::Numerical("the points do not determine a curve".into());
+        let shape = soft_shape(space, &springs, self.quadratic).ok_or_else(broken)?;
+        let mut holds = self.holds(&shape, &springs.held);
+        holds.follow(springs.held_feet());
+        Ok(Free {
+            shape,
+            springs,
+            holds,
+            choice: fit.choice,
+            net: "the tolerance",
+        })
     }
 
     /// Halves the spans at points that are beyond their tolerance.
@@ -429,8 +473,7 @@ impl<const D: usize> Bench<'_, D> {
         fit.holds.unstraighten();
         for [a, b] in &self.task.straight {
             let u = &self.traced.parameters;
-            fit.holds
-                .straighten(&fit.shape.energy.nodes, [u[*a], u[*b]]);
+            fit.holds.straighten(&fit.shape.energy.nodes, [u[*a], u[*b]]);
         }
         true
     }
@@ -444,8 +487,7 @@ impl<const D: usize> Bench<'_, D> {
         }
         let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
         let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
-        fit.holds
-            .weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
+        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
         for price in PRICES {
             let bounds = Bounds {
@@ -469,8 +511,7 @@ impl<const D: usize> Bench<'_, D> {
         const ROUNDS: usize = 6;
         let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
         let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
-        fit.holds
-            .weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
+        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
         let mut result = None;
         for _ in 0..ROUNDS {
@@ -490,6 +531,42 @@ impl<const D: usize> Bench<'_, D> {
         Ok(result.expect("there is at least one round"))
     }
 
+    /// The walk where points are free in some axes only: their feet cannot
+    /// wait to the end, and where one ends beyond its limit the limit is drawn
+    /// in by that and the walk taken up again.
+    fn walk_with_feet(
+        &self,
+        fit: &mut Free<D>,
+        tolerances: &[f64],
+    ) -> Result<super::within::Fairest, Stop> {
+        /// Times that limits are drawn in.
+        const ROUNDS: usize = 8;
+        /// What a limit keeps beyond what is needed.
+        const SPARE: f64 = 0.995;
+        let mut drawn_in = tolerances.to_vec();
+        let mut best = self.walk(fit, tolerances)?;
+        if fit.springs.is_free() {
+            return Ok(best);
+        }
+        let [a, b] = fit.shape.space.domain();
+        for _ in 0..ROUNDS {
+            fit.springs.refresh(&fit.shape.space, &fit.shape.x, 0.1 * (b - a));
+            if worst(&fit.shape, &fit.springs, tolerances) <= 1.0 {
+                break;
+            }
+            let residuals = fit.springs.residuals(&fit.shape.space, &fit.shape.x);
+            for ((own, e), t) in drawn_in.iter_mut().zip(&residuals).zip(tolerances) {
+                if e.norm() > *t {
+                    *own *= SPARE * t / e.norm();
+                }
+            }
+            if self.approach(fit, &drawn_in)? < 1.0 {
+                best = self.walk(fit, &drawn_in)?;
+            }
+        }
+        Ok(best)
+    }
+
     /// Springs so weak that they choose only among equally fair curves.
     fn lazy(&self, fit: &Free<D>, tolerances: &[f64]) -> Gram<D> {
         /// Their energy where every point is at its limit, as a share of the
@@ -498,17 +575,10 @@ impl<const D: usize> Bench<'_, D> {
         let energy = fit.shape.energy.cost(&fit.shape.space, &fit.shape.x)[0];
         let least = super::within::no_energy(&fit.shape.space);
         let mut springs = fit.springs.clone();
-        let bounded = tolerances
-            .iter()
-            .filter(|t| t.is_finite() && **t > 0.0)
-            .count();
+        let bounded = tolerances.iter().filter(|t| t.is_finite() && **t > 0.0).count();
         let share = LAZY * energy.max(least) / bounded.max(1) as f64;
         for (w, t) in springs.weights.iter_mut().zip(tolerances) {
-            *w = if t.is_finite() && *t > 0.0 {
-                share / (t * t)
-            } else {
-                0.0
-            };
+            *w = if t.is_finite() && *t > 0.0 { share / (t * t) } else { 0.0 };
         }
         springs.gram(&fit.shape.space, &fit.shape.x)
     }
@@ -533,17 +603,13 @@ impl<const D: usize> Bench<'_, D> {
                 let tolerances: Vec<f64> = own.iter().map(|t| t * factor).collect();
                 let used = self.approach(&mut fit, &tolerances)?;
                 if used >= 1.0 {
-                    solved
-                        .trade_off
-                        .push(row(factor, used, &fit.shape, &fit.springs));
+                    solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
                     continue;
                 }
                 let kept = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
                 self.walk(&mut fit, &tolerances)?;
                 let used = worst(&fit.shape, &fit.springs, &tolerances);
-                solved
-                    .trade_off
-                    .push(row(factor, used, &fit.shape, &fit.springs));
+                solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
                 (fit.shape, fit.springs, fit.holds) = kept;
             }
         }

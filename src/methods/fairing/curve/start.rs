@@ -56,6 +56,89 @@ pub(super) fn ordered_parameters<const D: usize>(
     (parameters, [0.0, end])
 }
 
+/// Points that stand out from their neighbours so much that chords through
+/// them would mislead: the loftsman's check by differences. Each point is
+/// compared with the cubic through the two before and the two after it, on
+/// even parameters; one that is off by many medians, and by more than its
+/// neighbours, stands out; at the ends from the cubics of the inner ones. Only a suspicion: the fit decides.
+pub(super) fn standing_out<const D: usize>(points: &[Vector<D>], closed: bool) -> Vec<usize> {
+    /// Medians of the differences beyond which a point stands out.
+    const MANY: f64 = 8.0;
+    /// Noise of the inner difference, √(1 + 34/36), against that of the
+    /// cubics next to an end, √(1 + 53/16), and at it, √70.
+    const NEXT_TO_END: f64 = 0.67;
+    const END: f64 = 0.167;
+    /// Fewer points show no difference from their neighbours.
+    const LEAST: usize = 9;
+    let n = points.len();
+    if n < LEAST {
+        return Vec::new();
+    }
+    let at = |i: isize| points[i.rem_euclid(n as isize) as usize];
+    let difference = |i: usize| {
+        let k = i as isize;
+        let inner = closed || (i >= 2 && i + 2 < n);
+        // Inwards from an end.
+        let way = if i < n / 2 { 1 } else { -1 };
+        let (expected, along, share) = if inner {
+            let between = (at(k - 1) + at(k + 1)) * 4.0 - at(k - 2) - at(k + 2);
+            (between / 6.0, at(k + 1) - at(k - 1), 1.0)
+        } else if i == 1 || i + 2 == n {
+            let beyond = at(k + way) * 6.0 - at(k + 2 * way) * 4.0 + at(k + 3 * way);
+            ((beyond + at(k - way)) / 4.0, at(k + way) - at(k - way), NEXT_TO_END)
+        } else {
+            let inside = (at(k + way) + at(k + 3 * way)) * 4.0;
+            let expected = inside - at(k + 2 * way) * 6.0 - at(k + 4 * way);
+            (expected, at(k + way) - at(k + 2 * way), END)
+        };
+        let off = at(k) - expected;
+        // Uneven spacing shows along the curve, a slip across it too; but an
+        // end that folds back is one.
+        if !inner && (at(k) - at(k + way)).dot(&(at(k + way) - at(k + 2 * way))) < 0.0 {
+            return share * off.norm();
+        }
+        let q = along.norm_squared().max(f64::MIN_POSITIVE);
+        share * (off - along * (along.dot(&off) / q)).norm()
+    };
+    let all: Vec<f64> = (0..n).map(difference).collect();
+    let mut sorted: Vec<f64> = all.iter().copied().filter(|d| *d > 0.0).collect();
+    if sorted.is_empty() {
+        return Vec::new();
+    }
+    let middle = sorted.len() / 2;
+    let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let greatest = |i: usize| {
+        let low = i.saturating_sub(2);
+        all[low..(i + 3).min(n)].iter().all(|d| *d <= all[i])
+    };
+    (0..n).filter(|i| all[*i] > MANY * median && greatest(*i)).collect()
+}
+
+/// [`ordered_parameters`] of the points but for some, which get the middle
+/// between their neighbours.
+pub(super) fn parameters_without<const D: usize>(
+    points: &[Vector<D>],
+    closed: bool,
+    without: &[usize],
+) -> (Vec<f64>, [f64; 2]) {
+    let mut out = vec![false; points.len()];
+    without.iter().for_each(|i| out[*i] = true);
+    let kept: Vec<usize> = (0..points.len()).filter(|i| !out[*i]).collect();
+    let places: Vec<Vector<D>> = kept.iter().map(|i| points[*i]).collect();
+    let (u, domain) = ordered_parameters(&places, closed);
+    let mut all = vec![0.0; points.len()];
+    for (k, i) in kept.iter().enumerate() {
+        all[*i] = u[k];
+        let next = u.get(k + 1).copied().unwrap_or(domain[1]);
+        let end = kept.get(k + 1).copied().unwrap_or(points.len());
+        for (step, j) in (*i + 1..end).enumerate() {
+            let share = (step + 1) as f64 / (end - i) as f64;
+            all[j] = u[k] + share * (next - u[k]);
+        }
+    }
+    (all, domain)
+}
+
 fn chords<const D: usize>(points: &[Vector<D>]) -> Vec<f64> {
     let mut sum = 0.0;
     let mut out = Vec::with_capacity(points.len());

@@ -32,6 +32,10 @@ const MOST_CELLS: usize = 2500;
 /// Mean number of points a cell must have before its mean says more than a
 /// point, unless every point has a cell of its own.
 const LEAST_POINTS: f64 = 1.0;
+/// The same where slips are expected, whose cells are then almost empty: below
+/// the usual number of points by this divisor.
+const POINTS_OF_ROBUST: f64 = 6.0;
+const LONELY: usize = 5;
 /// Share of the points that may hang on twigs.
 const TWIGS: f64 = 0.06;
 /// A twig this many cells long with this share of the points is a branch.
@@ -43,6 +47,11 @@ const PARTING_GAP: f64 = 4.0;
 const PART_SHARE: f64 = 0.03;
 /// The ends of the path of a closed curve are this near, in widest gaps.
 const CLOSING_GAP: f64 = 2.5;
+/// A path that comes back to its end after this many widest gaps branches
+/// there.
+const TAIL: f64 = 12.0;
+/// Points farther off than this many deviations do not say where the end is.
+const FAR: f64 = 5.0;
 /// Spans of the first spline.
 const FIRST_SPANS: usize = 48;
 
@@ -53,6 +62,8 @@ struct Path<const D: usize> {
     near: Vec<usize>,
     side: f64,
     closed: bool,
+    /// Points in cells almost empty.
+    lonely: Vec<usize>,
     /// Share of the points on twigs.
     twigs: f64,
 }
@@ -65,22 +76,23 @@ struct Path<const D: usize> {
 pub(super) fn trace<const D: usize>(
     points: &[Vector<D>],
     degree: usize,
-    closed: Option<bool>,
+    (closed, robust): (Option<bool>, bool),
     control: &dyn Control,
 ) -> Result<Traced, FitError> {
-    let path = find_path(points, closed, control)?;
+    let path = find_path(points, (closed, robust), control)?;
     let (parameters, domain) = project(points, &path);
     let first = Traced {
         parameters,
         domain,
         closed: path.closed,
+        doubtful: path.lonely,
     };
     refine(points, degree, &first, control)
 }
 
 fn find_path<const D: usize>(
     points: &[Vector<D>],
-    closed: Option<bool>,
+    (closed, robust): (Option<bool>, bool),
     control: &dyn Control,
 ) -> Result<Path<D>, FitError> {
     let mut best: Option<Path<D>> = None;
@@ -88,16 +100,18 @@ fn find_path<const D: usize>(
     for power in (COARSEST..=FINEST).rev() {
         control.check()?;
         let side = 2f64.powf(-0.5 * f64::from(power));
-        let all = cells(points, side);
+        let mut all = cells(points, side);
         let count = all.len();
-        let dense = points.len() as f64 >= LEAST_POINTS * count as f64;
+        let least = if robust { POINTS_OF_ROBUST } else { LEAST_POINTS };
+        let dense = points.len() as f64 >= least * count as f64;
         if count > MOST_CELLS || !dense {
             continue;
         }
         if count < 4 && best.is_some() {
             break;
         }
-        match through(&all, points.len(), side, closed) {
+        let lonely = if robust { take_lonely(&mut all) } else { Vec::new() };
+        match through(&all, (points, lonely), side, closed) {
             Ok(path) if path.twigs <= TWIGS => return Ok(path),
             Ok(path) => {
                 if best.as_ref().is_none_or(|b| path.twigs < b.twigs) {
@@ -117,10 +131,11 @@ fn find_path<const D: usize>(
 /// The path through the cells of one lattice.
 fn through<const D: usize>(
     all: &[Cell<D>],
-    count: usize,
+    (points, lonely): (&[Vector<D>], Vec<usize>),
     side: f64,
     closed: Option<bool>,
 ) -> Result<Path<D>, Issue> {
+    let count = points.len();
     let means: Vec<Vector<D>> = all.iter().map(|c| c.mean).collect();
     let tree = Tree::spanning(&means);
     let total: f64 = tree.edges().map(|e| e.2).sum();
@@ -148,15 +163,49 @@ fn through<const D: usize>(
         return Err(branches(all, &hung, branch));
     }
     let path: Vec<Vector<D>> = nodes.iter().map(|k| means[*k]).collect();
+    for i in &lonely {
+        let distance = |k: &usize| (path[*k] - points[*i]).norm();
+        let nearest = (0..path.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        near[*i] = nearest.unwrap_or(0);
+    }
     let gap = (path[0] - path[path.len() - 1]).norm();
     let loops = path.len() > 5 && gap <= CLOSING_GAP * widest && gap < 0.2 * total;
+    if closed.is_none() && !loops {
+        check_tails(all, &nodes, &path, widest)?;
+    }
     Ok(Path {
+        lonely,
         near,
         side,
         closed: closed.unwrap_or(loops),
         twigs: twigs as f64 / count as f64,
         nodes: path,
     })
+}
+
+/// Removes the cells that hold far fewer points than others, and returns
+/// their points.
+fn take_lonely<const D: usize>(all: &mut Vec<Cell<D>>) -> Vec<usize> {
+    let mut counts: Vec<usize> = all.iter().map(|c| c.points.len()).collect();
+    counts.sort_unstable();
+    // The points, not the cells, say what is usual: slips have cells of their
+    // own.
+    let total: usize = counts.iter().sum();
+    let mut sum = 0;
+    let usual = counts.iter().find(|c| {
+        sum += **c;
+        2 * sum >= total
+    });
+    let least = usual.copied().unwrap_or(0) / LONELY;
+    let mut lonely = Vec::new();
+    all.retain(|c| {
+        let stays = c.points.len() > least;
+        if !stays {
+            lonely.extend_from_slice(&c.points);
+        }
+        stays
+    });
+    lonely
 }
 
 fn check_parts<const D: usize>(
@@ -190,6 +239,35 @@ fn check_parts<const D: usize>(
     })
 }
 
+/// An end of the path that touches its middle: a loop with a tail.
+fn check_tails<const D: usize>(
+    all: &[Cell<D>],
+    nodes: &[usize],
+    path: &[Vector<D>],
+    widest: f64,
+) -> Result<(), Issue> {
+    let last = path.len() - 1;
+    for (end, step) in [(0, 1_isize), (last, -1)] {
+        let mut along = 0.0;
+        let mut at = end as isize;
+        while (0..=last as isize).contains(&(at + step)) {
+            let next = (at + step) as usize;
+            along += (path[next] - path[at as usize]).norm();
+            at = next as isize;
+            let across = (path[next] - path[end]).norm();
+            let inner = next != 0 && next != last;
+            if inner && along > TAIL * widest && across < 1.5 * widest {
+                let count = nodes.iter().map(|k| all[*k].points.len()).sum();
+                let hung: Vec<(usize, f64)> = (0..all.len())
+                    .map(|k| (0, f64::from(u8::from(k == nodes[end]))))
+                    .collect();
+                return Err(branches(all, &hung, (count, 0.0)));
+            }
+        }
+    }
+    Ok(())
+}
+
 fn branches<const D: usize>(
     all: &[Cell<D>],
     hung: &[(usize, f64)],
@@ -205,8 +283,8 @@ fn branches<const D: usize>(
         path: vec!["input".into(), "points".into(), tip.to_string()],
         code: "branch",
         message: format!(
-            "the points branch: {count} of them, among them point {tip}, hang on the longest \
-             path as a side branch"
+            "the points branch: no single curve passes them; {count} of them, among them point \
+             {tip}, lie on a side branch or on a loop with a tail"
         ),
         hint: Some("send one curve a request, or the points in their order".into()),
     }
@@ -234,16 +312,8 @@ fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [
             for k in near.saturating_sub(REACH)..=(near + REACH).min(last) {
                 let along = nodes[k + 1] - nodes[k];
                 let t = (p - nodes[k]).dot(&along) / along.norm_squared();
-                let low = if k == 0 && !path.closed {
-                    f64::NEG_INFINITY
-                } else {
-                    0.0
-                };
-                let high = if k == last && !path.closed {
-                    f64::INFINITY
-                } else {
-                    1.0
-                };
+                let low = if k == 0 && !path.closed { f64::NEG_INFINITY } else { 0.0 };
+                let high = if k == last && !path.closed { f64::INFINITY } else { 1.0 };
                 let t = t.clamp(low, high);
                 let distance = (p - (nodes[k] + along * t)).norm();
                 if distance < best.0 {
@@ -256,17 +326,15 @@ fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [
     if path.closed {
         return (parameters, [0.0, total]);
     }
-    // An end cell's mean lies half a cell inside; its points say how far out.
-    let low = parameters
-        .iter()
-        .copied()
-        .fold(0.0, f64::min)
-        .max(-2.0 * path.side);
-    let high = parameters
-        .iter()
-        .copied()
-        .fold(total, f64::max)
-        .min(total + 2.0 * path.side);
+    // An end cell's mean lies half a cell inside; its points say how far out,
+    // slips do not.
+    let mut counts = vec![true; points.len()];
+    path.lonely.iter().for_each(|i| counts[*i] = false);
+    for (u, _) in parameters.iter_mut().zip(&counts).filter(|(_, c)| !**c) {
+        *u = u.clamp(0.0, total);
+    }
+    let low = parameters.iter().copied().fold(0.0, f64::min).max(-2.0 * path.side);
+    let high = parameters.iter().copied().fold(total, f64::max).min(total + 2.0 * path.side);
     for u in &mut parameters {
         *u = (*u - low).clamp(0.0, high - low);
     }
@@ -280,21 +348,18 @@ fn refine<const D: usize>(
     first: &Traced,
     control: &dyn Control,
 ) -> Result<Traced, FitError> {
-    let intervals = if first.closed {
-        points.len()
-    } else {
-        points.len() - 1
-    };
+    let intervals = if first.closed { points.len() } else { points.len() - 1 };
     let least = if first.closed { 2 * degree + 2 } else { 1 };
     let spans = FIRST_SPANS.min(intervals).max(least);
     let data = (&first.parameters[..], first.domain, first.closed);
     let space = space_for(degree, data, spans, &Breaks::default())
         .map_err(|e| FitError::Numerical(e.to_string()))?;
-    let weights = vec![1.0; points.len()];
+    let mut weights = vec![1.0; points.len()];
+    first.doubtful.iter().for_each(|i| weights[*i] = 0.0);
     let feet = first.parameters.clone();
     let mut springs = Springs::new(points.to_vec(), weights, feet, Vector::repeat(1.0));
     if !first.closed {
-        springs.pin(extremes(&first.parameters));
+        springs.pin(extremes(&first.parameters, &springs.weights));
     }
     let broken = || FitError::Numerical("the points do not determine a curve".into());
     let mut shape = first_shape(space, &springs, None).ok_or_else(broken)?;
@@ -311,6 +376,7 @@ fn refine<const D: usize>(
             parameters,
             domain,
             closed: true,
+            doubtful: first.doubtful.clone(),
         });
     }
     // Beyond the ends on the tangents.
@@ -323,7 +389,13 @@ fn refine<const D: usize>(
     }
     let sizes: Vec<f64> = residuals.iter().map(Vector::norm).collect();
     let noise = spread::<D>(&sizes, &springs.weights);
-    let domain = ends(&parameters, noise);
+    let certain = parameters.iter().zip(&springs.weights).zip(&sizes);
+    let kept: Vec<f64> = certain
+        .filter(|((_, w), size)| **w > 0.0 && **size < FAR * noise)
+        .map(|((s, _), _)| *s)
+        .collect();
+    let kept = if kept.len() > 1 { kept } else { parameters.clone() };
+    let domain = ends(&kept, noise);
     for s in &mut parameters {
         *s = s.clamp(domain[0], domain[1]);
     }
@@ -331,12 +403,13 @@ fn refine<const D: usize>(
         parameters,
         domain,
         closed: false,
+        doubtful: first.doubtful.clone(),
     })
 }
 
-fn extremes(parameters: &[f64]) -> [usize; 2] {
+fn extremes(parameters: &[f64], weights: &[f64]) -> [usize; 2] {
     let by = |a: &usize, b: &usize| parameters[*a].total_cmp(&parameters[*b]);
-    let all = || 0..parameters.len();
+    let all = || (0..parameters.len()).filter(|i| weights[*i] > 0.0);
     [all().min_by(by).unwrap_or(0), all().max_by(by).unwrap_or(0)]
 }
 

@@ -131,7 +131,10 @@ pub(super) fn enter<const D: usize>(
     price: f64,
     control: &dyn Control,
 ) -> Result<Fairest, Stop> {
-    let energy = terms.objective(x).max(no_energy(terms.space));
+    // Where the curve is still a line or an arc, the energy of one that is
+    // neither: κ changing by 1/L along it.
+    let [a, b] = terms.space.domain();
+    let energy = terms.objective(x).max((b - a).powi(-3));
     let mut walk = Walk::begin(terms, springs, x, price * energy);
     walk.run(terms, control)
 }
@@ -231,9 +234,10 @@ impl<'a, const D: usize> Walk<'a, D> {
         self.springs.refresh(terms.space, self.x, REACH * (b - a));
         self.rooms = self.all_rooms(terms);
         if self.rooms.iter().any(|c| *c <= 0.0) {
-            // Feet that agree in some axes only may be farther away than they
-            // were: they wait.
-            self.springs.feet = feet;
+            // A foot that agrees in some axes only may be farther away than it
+            // was: it waits.
+            let each = self.springs.feet.iter_mut().zip(&feet).zip(&self.rooms);
+            each.filter(|(_, c)| **c <= 0.0).for_each(|((u, before), _)| *u = *before);
             self.rooms = self.all_rooms(terms);
         }
         for (z, c) in self.duals.iter_mut().zip(&self.rooms) {
