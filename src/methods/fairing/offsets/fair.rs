@@ -143,7 +143,7 @@ fn field(task: &Task, families: &[Lines; 2], control: &dyn Control) -> Result<Fi
     };
     let (energy, model) = stretched(task, (&net, &springs), (order(*size), 1.0), control)?;
     let (chosen, weight, noise) = if task.robust {
-        let r = robust(&net, &springs, (&energy, model), control)?;
+        let r = robust(&net, &springs, (&energy, model), (None, control))?;
         (r.chosen, r.weight, r.scale)
     } else {
         let chosen = choose(&gather(&net, &springs), &energy, model, (None, control))?;

@@ -1,1 +1,205 @@
+use super::outcome::CellKind;
+use super::request::Options;
+use super::*;
+use crate::methods::fairing::surface::tests::Noise;
+use crate::solver::Unwatched;
 
+/// Half-breadth of a Wigley-like hull of length 20, depth 2, beam 4, whose
+/// stem and stern rake: outside it is negative.
+fn hull(x: f64, z: f64) -> f64 {
+    let ends = 9.0 + 0.4 * z;
+    2.0 * (1.0 - (x / ends).powi(2)) * (1.0 - ((2.0 - z) / 2.3).powi(2))
+}
+
+fn table(sigma: f64, seed: u64) -> Request {
+    let stations: Vec<f64> = (0..=20).map(|i| -10.0 + f64::from(i)).collect();
+    let waterlines: Vec<f64> = (0..=8).map(|j| 0.25 * f64::from(j)).collect();
+    let noise = &mut Noise::new(seed);
+    let mut cell = |x: f64, z: f64| {
+        let y = hull(x, z);
+        Some(if y > 0.0 {
+            (y + sigma * noise.normal()).max(0.001)
+        } else {
+            0.0
+        })
+    };
+    let half_breadths = stations
+        .iter()
+        .map(|x| waterlines.iter().map(|z| cell(*x, *z)).collect())
+        .collect();
+    Request {
+        stations,
+        waterlines,
+        half_breadths,
+        options: Options::default(),
+    }
+}
+
+fn done(request: &Request) -> Outcome {
+    fit(request, &Unwatched).expect("a valid table")
+}
+
+#[test]
+fn the_table_is_faired_towards_the_hull() {
+    let sigma = 0.02;
+    let request = table(sigma, 1);
+    let outcome = done(&request);
+    assert!(
+        (outcome.surface.noise / sigma - 1.0).abs() < 0.25,
+        "{}",
+        outcome.surface.noise
+    );
+    let (mut before, mut after, mut cells) = (0.0, 0.0, 0);
+    for (i, row) in outcome.table.iter().enumerate() {
+        for (j, cell) in row.iter().enumerate() {
+            let truth = hull(request.stations[i], request.waterlines[j]);
+            if cell.kind == CellKind::Measured {
+                let (old, new) = (cell.old.expect("measured"), cell.new.expect("inside"));
+                before += (old - truth).powi(2);
+                after += (new - truth).powi(2);
+                cells += 1;
+                assert!((cell.change.expect("both") - (new - old)).abs() < 1e-12);
+            } else {
+                assert!(truth < 0.05, "cell {i} {j} is {:?}", cell.kind);
+            }
+        }
+    }
+    assert!(cells > 150);
+    assert!(after < 0.25 * before, "{after} {before}");
+}
+
+#[test]
+fn stations_and_waterlines_stay_in_their_planes() {
+    let request = table(0.01, 2);
+    let outcome = done(&request);
+    for (x, pieces) in request.stations.iter().zip(&outcome.stations) {
+        for curve in pieces {
+            let [a, b] = curve.domain();
+            for k in 0..=10 {
+                let p = curve.point(a + (b - a) * f64::from(k) / 10.0);
+                assert!((p.x - x).abs() < 1e-6, "{p}");
+                assert!(p.y > -1e-6);
+            }
+        }
+    }
+    for (z, pieces) in request.waterlines.iter().zip(&outcome.waterlines) {
+        assert!(!pieces.is_empty());
+        for curve in pieces {
+            let [a, b] = curve.domain();
+            assert!((curve.point(0.5 * (a + b)).z - z).abs() < 1e-6);
+        }
+    }
+    assert_eq!(outcome.buttocks.len(), 3);
+    for buttock in &outcome.buttocks {
+        assert!(!buttock.curves.is_empty());
+        for curve in &buttock.curves {
+            let [a, b] = curve.domain();
+            let p = curve.point(0.5 * (a + b));
+            assert!((p.y - buttock.y).abs() < 1e-3, "{p} for {}", buttock.y);
+            assert!((hull(p.x, p.z) - buttock.y).abs() < 0.03);
+        }
+    }
+}
+
+#[test]
+fn no_cell_leaves_its_tolerance() {
+    let mut request = table(0.02, 3);
+    request.options.tolerance = Some(0.04);
+    request.options.cell_tolerances = vec![(10, 4, 0.005)];
+    request.options.locked = vec![[9, 5]];
+    let outcome = done(&request);
+    assert!(outcome.surface.within_tolerance, "{:?}", outcome.summary);
+    for cell in outcome.table.iter().flatten() {
+        if cell.kind == CellKind::Measured {
+            assert!(cell.change.expect("both").abs() <= 0.04 + 1e-9);
+        }
+    }
+    assert!(outcome.table[10][4].change.expect("both").abs() <= 0.005 + 1e-9);
+    assert!(outcome.table[9][5].change.expect("both").abs() <= 1e-6);
+}
+
+#[test]
+fn a_mistyped_cell_is_found_with_its_value() {
+    let mut request = table(0.01, 4);
+    request.half_breadths[8][3] = request.half_breadths[8][3].map(|y| y + 0.5);
+    let outcome = done(&request);
+    let slip = outcome.slips.first().expect("one slip");
+    assert_eq!((slip.station, slip.waterline), (8, 3));
+    let truth = hull(request.stations[8], request.waterlines[3]);
+    assert!((slip.expected - truth).abs() < 0.03, "{slip:?} {truth}");
+    assert!(slip.confidence > 0.99);
+}
+
+#[test]
+fn gaps_inside_are_filled_and_marked() {
+    let mut request = table(0.005, 5);
+    request.half_breadths[10][4] = None;
+    request.half_breadths[11][4] = None;
+    request.half_breadths[0][0] = None;
+    let outcome = done(&request);
+    let cell = outcome.table[10][4];
+    assert_eq!(
+        (cell.kind, cell.old, cell.change),
+        (CellKind::Filled, None, None)
+    );
+    let truth = hull(request.stations[10], request.waterlines[4]);
+    assert!((cell.new.expect("filled") - truth).abs() < 0.02);
+    assert_eq!(outcome.table[0][0].kind, CellKind::Outside);
+    assert_eq!(outcome.table[0][0].new, None);
+}
+
+#[test]
+fn zeros_beyond_the_hull_do_not_bend_it() {
+    let with = done(&table(0.005, 6));
+    let mut without = table(0.005, 6);
+    let mut outside = 0;
+    for (row, cells) in with.table.iter().zip(&mut without.half_breadths) {
+        for (cell, given) in row.iter().zip(cells) {
+            if cell.kind == CellKind::Outside {
+                *given = None;
+                outside += 1;
+            }
+        }
+    }
+    assert!(outside > 5);
+    let without = done(&without);
+    for (a, b) in with
+        .table
+        .iter()
+        .flatten()
+        .zip(without.table.iter().flatten())
+    {
+        if let (Some(a), Some(b)) = (a.new, b.new) {
+            assert!((a - b).abs() < 0.01);
+        }
+    }
+    assert!(with.notes.iter().any(|n| n.contains("beyond")));
+}
+
+#[test]
+fn errors_point_to_their_cell() {
+    let path = |request: &Request| validate(request)[0].path.join("/");
+    let mut bad = table(0.0, 7);
+    bad.half_breadths[3][7] = Some(-0.1);
+    assert_eq!(path(&bad), "input/offsets/y/3/7");
+    let mut bad = table(0.0, 7);
+    bad.half_breadths[2][1] = Some(f64::NAN);
+    assert_eq!(path(&bad), "input/offsets/y/2/1");
+    let mut bad = table(0.0, 7);
+    bad.half_breadths[5].pop();
+    assert_eq!(path(&bad), "input/offsets/y/5");
+    let mut bad = table(0.0, 7);
+    bad.stations[4] = bad.stations[3];
+    assert_eq!(path(&bad), "input/offsets/stations/4");
+    let mut bad = table(0.0, 7);
+    bad.waterlines.swap(2, 3);
+    assert_eq!(path(&bad), "input/offsets/waterlines/3");
+    let mut bad = table(0.0, 7);
+    bad.options.tolerance = Some(-1.0);
+    assert_eq!(path(&bad), "options/tolerance");
+    let mut bad = table(0.0, 7);
+    for row in &mut bad.half_breadths {
+        row.fill(Some(0.0));
+    }
+    assert_eq!(path(&bad), "input/offsets/y");
+}

@@ -4,7 +4,7 @@ use super::energy::Energy;
 use super::feet::Foot;
 use super::net::{Net, Sheet};
 use super::springs::{Springs, gather};
-use super::stiffness::{Chosen, Likelihood, choose};
+use super::stiffness::{Chosen, Likelihood, choose, last};
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
@@ -43,7 +43,8 @@ pub(in super::super) struct Robust<const D: usize> {
     pub(in super::super) scale: f64,
 }
 
-/// Fits with Tukey's weights, scale from the median residual.
+/// Fits with Tukey's weights, scale from the median residual; `near`: a λ to
+/// begin with.
 ///
 /// # Errors
 /// As [`choose`].
@@ -51,10 +52,10 @@ pub(in super::super) fn robust<const D: usize>(
     net: &Net,
     springs: &Springs<D>,
     (energy, model): (&EnvelopeMatrix, Likelihood),
-    control: &dyn Control,
+    (near, control): (Option<f64>, &dyn Control),
 ) -> Result<Robust<D>, FitError> {
     let mut now = springs.clone();
-    let mut chosen = choose(&gather(net, &now), energy, model, (None, control))?;
+    let mut chosen = choose(&gather(net, &now), energy, model, (near, control))?;
     let mut scale = chosen.noise;
     for _ in 0..ROUNDS {
         let residuals = residuals(net, &now, &chosen.control);
@@ -67,8 +68,7 @@ pub(in super::super) fn robust<const D: usize>(
             let t = (r / (CUT * unit)).min(1.0);
             *w = given * (1.0 - t * t).powi(2);
         }
-        let near = Some(chosen.lambda);
-        chosen = choose(&gather(net, &now), energy, model, (near, control))?;
+        chosen = last(&gather(net, &now), (energy, model), chosen.lambda, control)?;
     }
     Ok(Robust {
         chosen,

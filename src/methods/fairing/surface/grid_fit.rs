@@ -47,7 +47,7 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
     let masked = free_only(&springs, task.freedom);
     let (matrix, model) = stretched(task, (net, &masked), (order, free as f64), control)?;
     let (mut chosen, weight, noise) = if task.robust {
-        let r = robust(net, &masked, (&matrix, model), control)?;
+        let r = robust(net, &masked, (&matrix, model), (None, control))?;
         (r.chosen, r.weight, r.scale)
     } else {
         let chosen = choose(&gather(net, &masked), &matrix, model, (None, control))?;

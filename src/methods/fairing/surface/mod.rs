@@ -36,6 +36,8 @@ pub(super) mod springs;
 pub(super) mod stiffness;
 mod strips;
 pub(super) mod task;
+#[cfg(test)]
+pub(super) mod tests;
 pub(super) mod tolerance;
 
 pub use outcome::Outcome;

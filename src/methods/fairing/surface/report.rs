@@ -22,7 +22,7 @@ const FEW_TRADES: [f64; 3] = [1e-2, 1.0, 1e2];
 /// Order × half bandwidth² above which it is.
 const DEAR: f64 = 5e7;
 /// Points from which the table and the sheet "before" are made.
-const TRADE_SAMPLE: usize = 20_000;
+const TRADE_SAMPLE: usize = 5_000;
 /// λ of the sheet "before", against the chosen one; the next where it has no
 /// solution.
 const BEFORE: [f64; 3] = [1e-6, 1e-4, 1e-2];

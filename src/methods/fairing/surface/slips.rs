@@ -9,7 +9,7 @@
 use super::fit::{Fit, median_scale, robust, springs_to};
 use super::net::Sheet;
 use super::outcome::Slip;
-use super::springs::gather;
+use super::springs::{Normal, gather};
 use super::stiffness::{Factor, fit_with};
 use super::task::{Layout, Task};
 use crate::methods::FitError;
@@ -25,7 +25,12 @@ const CONFIDENCE: f64 = 0.5;
 /// Residuals below so many σ are not looked at.
 const LOOK: f64 = 3.0;
 /// Longest list.
-const MOST: usize = 500;
+const MOST: usize = 1000;
+/// Leverages worked out one by one where a solution is dear; the others count
+/// as the mean, which is then small.
+const EXACT: usize = 40;
+/// Order × half bandwidth above which it is dear.
+const DEAR: usize = 400_000;
 /// Noise below this share of the longest side is rounding.
 const ROUNDING: f64 = 1e-7;
 
@@ -37,7 +42,8 @@ pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec
     let springs = springs_to(&task.points, &fit.at, &task.weight);
     let net = &fit.sheet.net;
     let (control_points, weight, lambda) = if task.points.len() <= ROBUST_UP_TO && !task.robust {
-        let r = robust(net, &springs, (&fit.energy, fit.model), control)?;
+        let near = (Some(fit.lambda), control);
+        let r = robust(net, &springs, (&fit.energy, fit.model), near)?;
         (r.chosen.control, r.weight, r.chosen.lambda)
     } else {
         let control = fit.sheet.control.iter().map(|p| [p.x, p.y, p.z]).collect();
@@ -51,9 +57,15 @@ pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec
         .map(|(p, at)| across(&sheet, p, *at, task.freedom))
         .collect();
     let lengths: Vec<f64> = residual.iter().map(|r| r.0.abs()).collect();
-    let sigma = scale(&lengths).max(ROUNDING);
     let mut weighted = springs;
     weighted.weight = weight;
+    let normal = gather(net, &weighted);
+    let Some(solved) = fit_with(&normal, &fit.energy, lambda, fit.model) else {
+        return Ok(Vec::new());
+    };
+    control.check()?;
+    let used = used(&normal, fit, (lambda, &solved.factor)) / lengths.len() as f64;
+    let sigma = (scale(&lengths) / (1.0 - used.clamp(0.0, 0.9)).sqrt()).max(ROUNDING);
     let suspects: Vec<usize> = (0..lengths.len())
         .filter(|i| lengths[*i] > LOOK * sigma)
         .collect();
@@ -61,14 +73,21 @@ pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec
         return Ok(Vec::new());
     }
     control.check()?;
-    let Some(solved) = fit_with(&gather(net, &weighted), &fit.energy, lambda, fit.model) else {
-        return Ok(Vec::new());
-    };
     let mut slips: Vec<Slip> = Vec::new();
     let mut order = suspects;
     order.sort_by(|a, b| lengths[*b].total_cmp(&lengths[*a]));
-    for i in order.into_iter().take(2 * MOST) {
-        let h = leverage(&sheet, fit.at[i], &solved.factor);
+    let mean = (net.len() as f64 / lengths.len() as f64).min(1.0);
+    let exact = if net.len() * net.half_bandwidth() > DEAR {
+        EXACT
+    } else {
+        2 * MOST
+    };
+    for (rank, i) in order.into_iter().take(2 * MOST).enumerate() {
+        let h = if rank < exact {
+            leverage(&sheet, fit.at[i], &solved.factor)
+        } else {
+            mean
+        };
         let keep = (1.0 - weighted.weight[i] * h).max(1e-6);
         let alone = residual[i].0 / keep;
         let sigmas = alone.abs() / (sigma * (1.0 + h / keep).sqrt());
@@ -81,6 +100,20 @@ pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec
     slips.truncate(MOST);
     Ok(slips)
 }
+
+/// Degrees of freedom that a fit uses up, which its residuals lack:
+/// `N − d ln det(A + λP)/d ln λ`, by a difference.
+fn used(normal: &Normal<3>, fit: &Fit, (lambda, factor): (f64, &Factor)) -> f64 {
+    let order = normal.rhs.len() as f64;
+    let beside = fit_with(normal, &fit.energy, lambda * DIFFERENCE, fit.model);
+    beside.map_or(0.0, |b| {
+        let rise = b.factor.log_determinant() - factor.log_determinant();
+        order - rise / DIFFERENCE.ln()
+    })
+}
+
+/// Factor between the two λ of the difference.
+const DIFFERENCE: f64 = 1.1;
 
 /// σ that both the middle and the shoulders of the residuals agree with: the
 /// noise of real surveys has longer tails than the normal distribution, and

@@ -28,7 +28,7 @@ pub(in super::super) struct Spans {
     count: usize,
 }
 
-/// The functions that act at one parameter, with `R − 1` derivatives.
+/// The functions that act at one parameter, with `R − 1` ≤ 2 derivatives.
 #[derive(Debug, Clone, Copy)]
 pub(in super::super) struct Acting<const R: usize> {
     /// Index of the first control value that acts.
@@ -50,6 +50,13 @@ impl<const R: usize> Acting<R> {
     }
 }
 
+/// `k (k − 1) … (k − order + 1)`, by order and k.
+const FALLING: [[f64; MOST_ACTING]; 3] = [
+    [1.0; MOST_ACTING],
+    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
+    [0.0, 0.0, 2.0, 6.0, 12.0, 20.0],
+];
+
 /// Spans whose lengths agree to this share are equal.
 const EQUAL: f64 = 1e-9;
 
@@ -57,7 +64,10 @@ impl Spans {
     pub(in super::super) fn new(knots: &Knots) -> Self {
         let borders = knots.breakpoints();
         let count = knots.degree() + 1;
-        let spans: Vec<Span> = borders.windows(2).map(|w| span(knots, w[0], w[1])).collect();
+        let spans: Vec<Span> = borders
+            .windows(2)
+            .map(|w| span(knots, w[0], w[1]))
+            .collect();
         let domain = knots.domain();
         let mean = (domain[1] - domain[0]) / spans.len() as f64;
         let equal = borders
@@ -73,12 +83,11 @@ impl Spans {
     }
 
     /// The span of a parameter; outside the domain the nearest.
+    #[inline]
     pub(in super::super) fn span(&self, u: f64) -> usize {
         match self.uniform {
             // A value below zero or no number becomes 0.
-            Some(rate) => {
-                (((u - self.domain[0]) * rate) as usize).min(self.spans.len() - 1)
-            }
+            Some(rate) => (((u - self.domain[0]) * rate) as usize).min(self.spans.len() - 1),
             None => self.borders.partition_point(|b| *b <= u),
         }
     }
@@ -89,6 +98,7 @@ impl Spans {
     }
 
     /// The functions that act at `u`, moved into the domain.
+    #[inline]
     pub(in super::super) fn acting<const R: usize>(&self, u: f64) -> Acting<R> {
         let u = u.clamp(self.domain[0], self.domain[1]);
         let span = &self.spans[self.span(u)];
@@ -98,8 +108,7 @@ impl Spans {
         for (order, row) in rows.iter_mut().enumerate() {
             // Horner for the order-th derivative.
             for k in (order..self.count).rev() {
-                let factor: usize = (k + 1 - order..=k).product();
-                let factor = factor as f64;
+                let factor = FALLING[order][k];
                 for (r, c) in row.iter_mut().zip(&span.power[k]) {
                     *r = *r * t + factor * c;
                 }

@@ -5,7 +5,7 @@
 //! 1/cos of the slope. Springs are therefore weighted by cos² of the slope of
 //! a coarser fit: the sum of squares is then that of distances.
 
-use super::super::fit::{Fit, energy, robust};
+use super::super::fit::{Fit, energy, evaluate, robust};
 use super::super::net::{Net, Sheet};
 use super::super::springs::{Springs, gather};
 use super::super::stiffness::{self, Chosen, Likelihood, choose};
@@ -48,7 +48,14 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
         level_out(&sheet, &mut all);
         level_out(&sheet, &mut sample);
     }
-    while let Some(finer) = levels::next(step, best.chosen.lambda, (density, longer)) {
+    loop {
+        let fine = levels::next(step, best.chosen.lambda, (density, longer));
+        let Some(finer) = (match fine {
+            Some(finer) => Some(finer),
+            None => levels::beyond(step, leftover(&best, (domain, step), &sample)?),
+        }) else {
+            break;
+        };
         let net = levels::net(domain, finer, None)?;
         if !levels::affordable(&net, all.at.len()) || task.control_points.is_some() {
             break;
@@ -59,6 +66,22 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
         step = finer;
     }
     finish(task, best, (all, &sample), control)
+}
+
+/// Correlation of what the level leaves of its sample.
+fn leftover(
+    level: &Level,
+    place: ([[f64; 2]; 2], Step),
+    sample: &Springs<1>,
+) -> Result<f64, FitError> {
+    let residuals: Vec<f64> = sample
+        .at
+        .par_iter()
+        .zip(&sample.value)
+        .with_min_len(512)
+        .map(|(at, value)| value[0] - evaluate(&level.net, &level.chosen.control, *at)[0])
+        .collect();
+    levels::leftover(place, &sample.at, &residuals)
 }
 
 /// The fit of one level to the sample.
@@ -76,7 +99,7 @@ fn level(
     };
     let energy = term.matrix(&net);
     let (chosen, weight) = if task.robust {
-        let r = robust(&net, sample, (&energy, model), control)?;
+        let r = robust(&net, sample, (&energy, model), (near, control))?;
         (r.chosen, Some(r.weight))
     } else {
         let normal = gather(&net, sample);
@@ -108,7 +131,7 @@ fn finish(
     let (chosen, weight) = if sample.at.len() == all.at.len() && task.robust {
         (chosen, weight.unwrap_or(all.weight))
     } else if task.robust {
-        let r = robust(&net, &all, (&energy, model), control)?;
+        let r = robust(&net, &all, (&energy, model), (Some(chosen.lambda), control))?;
         (r.chosen, r.weight)
     } else {
         control.check()?;

@@ -7,8 +7,10 @@
 //! a λ, which tells how fine the next has to be.
 
 use super::super::net::Net;
+use super::super::springs::Cells;
 use crate::geometry::Knots;
 use crate::methods::FitError;
+use rayon::prelude::*;
 
 /// Degree of the net and order of its energy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,6 +49,12 @@ pub(in super::super) const MOST: usize = 96;
 const GROWTH: [f64; 2] = [1.5, 3.0];
 /// Spans a half wave that passes.
 const SPANS_A_HALF_WAVE: f64 = 0.7;
+/// Correlation of residuals from which a finer net is tried.
+const MISSED: f64 = 0.06;
+/// Fewest pairs of neighbours that can tell.
+const FEWEST_PAIRS: usize = 100;
+/// Standard deviations that chance is allowed.
+const CHANCE: f64 = 3.0;
 /// Fewest spans along the shorter side.
 const FEWEST_SPANS: usize = 3;
 /// Points that coarse levels look at: enough for dozens a control point.
@@ -90,6 +98,46 @@ pub(in super::super) fn next(
     Some(Step {
         space: if rough { ROUGH } else { now.space },
         spans: spans.min(MOST),
+    })
+}
+
+/// Mean correlation of the residuals of neighbours in cells half as long as
+/// the net's: nothing for noise, most of 1 for detail that the net misses.
+pub(in super::super) fn leftover(
+    (domain, step): ([[f64; 2]; 2], Step),
+    at: &[[f64; 2]],
+    residuals: &[f64],
+) -> Result<f64, FitError> {
+    let finer = Step {
+        spans: 2 * step.spans,
+        ..step
+    };
+    let cells = Cells::new(&net(domain, finer, None)?, at);
+    let products = |points: &[u32]| -> f64 {
+        let pair = |w: &[u32]| residuals[w[0] as usize] * residuals[w[1] as usize];
+        points.windows(2).map(pair).sum()
+    };
+    let pairs: Vec<(f64, usize)> = cells
+        .chunks()
+        .map(|points| (products(points), points.len() - 1))
+        .collect();
+    let (sum, count) = pairs.iter().fold((0.0, 0), |(s, n), (p, m)| (s + p, n + m));
+    let mean = residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len().max(1) as f64;
+    let share = sum / count.max(1) as f64 / mean.max(f64::MIN_POSITIVE);
+    // Chance alone gives 1/√count.
+    let chance = CHANCE / (count.max(1) as f64).sqrt();
+    Ok(if count >= FEWEST_PAIRS && share > chance {
+        share
+    } else {
+        0.0
+    })
+}
+
+/// The level after a fine enough one whose residuals are not noise.
+pub(in super::super) fn beyond(now: Step, leftover: f64) -> Option<Step> {
+    (leftover > MISSED && now.spans < MOST && now.space != SPARSE).then(|| Step {
+        space: ROUGH,
+        spans: (2 * now.spans).min(MOST),
     })
 }
 

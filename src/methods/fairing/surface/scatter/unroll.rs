@@ -5,7 +5,7 @@
 //! it smooth, and gives every point a foot to start from. At feet only the
 //! part of the noise across the sheet is left, one component a point.
 
-use super::super::feet::feet;
+use super::super::feet::{Foot, feet};
 use super::super::fit::{Fit, energy, median_scale, places, springs_to};
 use super::super::input::issue;
 use super::super::net::{Net, Sheet};
@@ -64,8 +64,10 @@ pub(in super::super) fn fit(
             "not-a-sheet",
             "the points cannot be unrolled into one sheet: they close all round, branch, or have \
              many points off the sheet",
-            Some("cut them along a line, for example by leaving out a sector, and give each sheet \
-                  by itself"),
+            Some(
+                "cut them along a line, for example by leaving out a sector, and give each sheet \
+                  by itself",
+            ),
         )])
     })?;
     control.check()?;
@@ -86,7 +88,19 @@ pub(in super::super) fn fit(
     let lengths = domain.map(|[a, b]| b - a);
     let density = task.weight.iter().sum::<f64>() / (lengths[0] * lengths[1]);
     let longer = lengths[0].max(lengths[1]);
-    while let Some(finer) = levels::next(step, level.chosen.lambda, (density, longer)) {
+    loop {
+        let fine = levels::next(step, level.chosen.lambda, (density, longer));
+        let Some(finer) = (match fine {
+            Some(finer) => Some(finer),
+            None => {
+                let feet = feet(&level.sheet(), &sample.points, &sample.at, FOOT_STEPS);
+                let residuals: Vec<f64> = feet.iter().map(Foot::signed).collect();
+                let rest = levels::leftover((domain, step), &sample.at, &residuals)?;
+                levels::beyond(step, rest)
+            }
+        }) else {
+            break;
+        };
         let net = levels::net(domain, finer, None)?;
         if !levels::affordable(&net, task.points.len()) || task.control_points.is_some() {
             break;
@@ -184,12 +198,7 @@ fn refine(
 }
 
 /// Every `stride`-th point with its foot on a sheet, from its node's place.
-fn seated(
-    task: &Task,
-    nodes: &Nodes,
-    (sheet, map): (&Sheet, &[[f64; 2]]),
-    stride: usize,
-) -> Cloud {
+fn seated(task: &Task, nodes: &Nodes, (sheet, map): (&Sheet, &[[f64; 2]]), stride: usize) -> Cloud {
     let points: Vec<Vector3<f64>> = task.points.iter().step_by(stride).copied().collect();
     let starts: Vec<[f64; 2]> = points
         .iter()
