@@ -47,11 +47,7 @@ pub(super) struct Gauge<'a> {
 
 impl<'a> Gauge<'a> {
     /// Prepares a curve; of a `closed` one extrema are counted around.
-    pub(super) fn new(
-        curve: &'a BSplineCurve,
-        plane: Option<Vector3<f64>>,
-        closed: bool,
-    ) -> Self {
+    pub(super) fn new(curve: &'a BSplineCurve, plane: Option<Vector3<f64>>, closed: bool) -> Self {
         let breaks = curve.knot_vector().breakpoints();
         let spans = breaks.windows(2).map(|w| [w[0], w[1]]).collect();
         Gauge {
@@ -118,7 +114,11 @@ impl<'a> Gauge<'a> {
         Fairness {
             curvature_variation: variation,
             bending,
-            extrema: if bent { self.extrema(&curvatures, PROMINENT * range) } else { 0 },
+            extrema: if bent {
+                self.extrema(&curvatures, PROMINENT * range)
+            } else {
+                0
+            },
             inflections: if bent && self.plane.is_some() {
                 sign_changes(&curvatures, SIGNLESS * amount)
             } else {

@@ -79,7 +79,10 @@ pub(super) fn solve<const D: usize>(
         traced,
         options: &request.options,
         control,
-        quadratic: request.options.energy.map(|e| [e.tension, e.bending, e.jerk]),
+        quadratic: request
+            .options
+            .energy
+            .map(|e| [e.tension, e.bending, e.jerk]),
     };
     let (mut fit, suspects) = bench.free()?;
     let mut tolerances = task.tolerances.clone();
@@ -208,7 +211,12 @@ impl<const D: usize> Bench<'_, D> {
     }
 
     fn suspects(&self, fit: &Free<D>, without: &[usize]) -> Result<Vec<Suspect<D>>, Stop> {
-        suspects(&fit.shape, &fit.springs, (&fit.choice, without), self.control)
+        suspects(
+            &fit.shape,
+            &fit.springs,
+            (&fit.choice, without),
+            self.control,
+        )
     }
 
     fn is_poor(&self, fit: &Free<D>) -> bool {
@@ -222,7 +230,11 @@ impl<const D: usize> Bench<'_, D> {
     }
 
     fn most_spans(&self) -> usize {
-        let least = if self.traced.closed { 2 * self.degree() + 2 } else { 1 };
+        let least = if self.traced.closed {
+            2 * self.degree() + 2
+        } else {
+            1
+        };
         self.intervals().clamp(least, MOST_SPANS)
     }
 
@@ -339,7 +351,11 @@ impl<const D: usize> Bench<'_, D> {
         let mut out = vec![false; u.len()];
         without.iter().for_each(|i| out[*i] = true);
         let all = || (0..u.len()).filter(|i| !out[*i]);
-        all().min_by(by).into_iter().chain(all().max_by(by)).collect()
+        all()
+            .min_by(by)
+            .into_iter()
+            .chain(all().max_by(by))
+            .collect()
     }
 
     /// Points that must stay.
@@ -354,8 +370,21 @@ impl<const D: usize> Bench<'_, D> {
         let [a, b] = self.traced.domain;
         let inside = |t: &f64| *t > a && *t < b;
         Breaks {
-            corners: self.task.knuckles.iter().map(|i| u[*i]).filter(inside).collect(),
-            joints: self.task.straight.iter().flatten().map(|i| u[*i]).filter(inside).collect(),
+            corners: self
+                .task
+                .knuckles
+                .iter()
+                .map(|i| u[*i])
+                .filter(inside)
+                .collect(),
+            joints: self
+                .task
+                .straight
+                .iter()
+                .flatten()
+                .map(|i| u[*i])
+                .filter(inside)
+                .collect(),
         }
     }
 
@@ -378,7 +407,11 @@ impl<const D: usize> Bench<'_, D> {
         if t.metric.iter().any(|m| *m != 1.0) {
             // Ends have no foot to find: they keep the coordinates that are
             // not free.
-            for i in self.ends(&self.traced.doubtful).into_iter().filter(|i| !held.contains(i)) {
+            for i in self
+                .ends(&self.traced.doubtful)
+                .into_iter()
+                .filter(|i| !held.contains(i))
+            {
                 holds.push(u[i], Condition::Place(t.points[i], t.metric), false);
             }
         }
@@ -473,7 +506,8 @@ impl<const D: usize> Bench<'_, D> {
         fit.holds.unstraighten();
         for [a, b] in &self.task.straight {
             let u = &self.traced.parameters;
-            fit.holds.straighten(&fit.shape.energy.nodes, [u[*a], u[*b]]);
+            fit.holds
+                .straighten(&fit.shape.energy.nodes, [u[*a], u[*b]]);
         }
         true
     }
@@ -487,7 +521,8 @@ impl<const D: usize> Bench<'_, D> {
         }
         let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
         let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
-        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
+        fit.holds
+            .weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
         for price in PRICES {
             let bounds = Bounds {
@@ -511,7 +546,8 @@ impl<const D: usize> Bench<'_, D> {
         const ROUNDS: usize = 6;
         let gram = fit.springs.gram(&fit.shape.space, &fit.shape.x);
         let offsets = Offsets::about(&fit.shape.space, &fit.shape.energy, &gram, &fit.shape.x);
-        fit.holds.weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
+        fit.holds
+            .weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
         let mut result = None;
         for _ in 0..ROUNDS {
@@ -550,7 +586,8 @@ impl<const D: usize> Bench<'_, D> {
         }
         let [a, b] = fit.shape.space.domain();
         for _ in 0..ROUNDS {
-            fit.springs.refresh(&fit.shape.space, &fit.shape.x, 0.1 * (b - a));
+            fit.springs
+                .refresh(&fit.shape.space, &fit.shape.x, 0.1 * (b - a));
             if worst(&fit.shape, &fit.springs, tolerances) <= 1.0 {
                 break;
             }
@@ -575,10 +612,17 @@ impl<const D: usize> Bench<'_, D> {
         let energy = fit.shape.energy.cost(&fit.shape.space, &fit.shape.x)[0];
         let least = super::within::no_energy(&fit.shape.space);
         let mut springs = fit.springs.clone();
-        let bounded = tolerances.iter().filter(|t| t.is_finite() && **t > 0.0).count();
+        let bounded = tolerances
+            .iter()
+            .filter(|t| t.is_finite() && **t > 0.0)
+            .count();
         let share = LAZY * energy.max(least) / bounded.max(1) as f64;
         for (w, t) in springs.weights.iter_mut().zip(tolerances) {
-            *w = if t.is_finite() && *t > 0.0 { share / (t * t) } else { 0.0 };
+            *w = if t.is_finite() && *t > 0.0 {
+                share / (t * t)
+            } else {
+                0.0
+            };
         }
         springs.gram(&fit.shape.space, &fit.shape.x)
     }
@@ -603,13 +647,17 @@ impl<const D: usize> Bench<'_, D> {
                 let tolerances: Vec<f64> = own.iter().map(|t| t * factor).collect();
                 let used = self.approach(&mut fit, &tolerances)?;
                 if used >= 1.0 {
-                    solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
+                    solved
+                        .trade_off
+                        .push(row(factor, used, &fit.shape, &fit.springs));
                     continue;
                 }
                 let kept = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
                 self.walk(&mut fit, &tolerances)?;
                 let used = worst(&fit.shape, &fit.springs, &tolerances);
-                solved.trade_off.push(row(factor, used, &fit.shape, &fit.springs));
+                solved
+                    .trade_off
+                    .push(row(factor, used, &fit.shape, &fit.springs));
                 (fit.shape, fit.springs, fit.holds) = kept;
             }
         }

@@ -85,7 +85,11 @@ pub(super) fn standing_out<const D: usize>(points: &[Vector<D>], closed: bool) -
             (between / 6.0, at(k + 1) - at(k - 1), 1.0)
         } else if i == 1 || i + 2 == n {
             let beyond = at(k + way) * 6.0 - at(k + 2 * way) * 4.0 + at(k + 3 * way);
-            ((beyond + at(k - way)) / 4.0, at(k + way) - at(k - way), NEXT_TO_END)
+            (
+                (beyond + at(k - way)) / 4.0,
+                at(k + way) - at(k - way),
+                NEXT_TO_END,
+            )
         } else {
             let inside = (at(k + way) + at(k + 3 * way)) * 4.0;
             let expected = inside - at(k + 2 * way) * 6.0 - at(k + 4 * way);
@@ -111,7 +115,9 @@ pub(super) fn standing_out<const D: usize>(points: &[Vector<D>], closed: bool) -
         let low = i.saturating_sub(2);
         all[low..(i + 3).min(n)].iter().all(|d| *d <= all[i])
     };
-    (0..n).filter(|i| all[*i] > MANY * median && greatest(*i)).collect()
+    (0..n)
+        .filter(|i| all[*i] > MANY * median && greatest(*i))
+        .collect()
 }
 
 /// [`ordered_parameters`] of the points but for some, which get the middle

@@ -45,6 +45,7 @@ const BRANCH_SHARE: f64 = 0.03;
 /// has this share of them.
 const PARTING_GAP: f64 = 4.0;
 const PART_SHARE: f64 = 0.03;
+const PARTS: &str = "several-parts";
 /// The ends of the path of a closed curve are this near, in widest gaps.
 const CLOSING_GAP: f64 = 2.5;
 /// A path that comes back to its end after this many widest gaps branches
@@ -102,7 +103,11 @@ fn find_path<const D: usize>(
         let side = 2f64.powf(-0.5 * f64::from(power));
         let mut all = cells(points, side);
         let count = all.len();
-        let least = if robust { POINTS_OF_ROBUST } else { LEAST_POINTS };
+        let least = if robust {
+            POINTS_OF_ROBUST
+        } else {
+            LEAST_POINTS
+        };
         let dense = points.len() as f64 >= least * count as f64;
         if count > MOST_CELLS || !dense {
             continue;
@@ -110,7 +115,11 @@ fn find_path<const D: usize>(
         if count < 4 && best.is_some() {
             break;
         }
-        let lonely = if robust { take_lonely(&mut all) } else { Vec::new() };
+        let lonely = if robust {
+            take_lonely(&mut all)
+        } else {
+            Vec::new()
+        };
         match through(&all, (points, lonely), side, closed) {
             Ok(path) if path.twigs <= TWIGS => return Ok(path),
             Ok(path) => {
@@ -118,6 +127,8 @@ fn find_path<const D: usize>(
                     best = Some(path);
                 }
             }
+            // Coarser cells would only hide the gap.
+            Err(issue) if issue.code == PARTS => return Err(FitError::Invalid(vec![issue])),
             Err(issue) => complaint = Some(issue),
         }
     }
@@ -227,7 +238,7 @@ fn check_parts<const D: usize>(
     let one = |p: &Vec<usize>| all[p[0]].points[0];
     Err(Issue {
         path: vec!["input".into(), "points".into()],
-        code: "several-parts",
+        code: PARTS,
         message: format!(
             "the points lie in {} parts of {} points; point {} belongs to one, point {} to another",
             large.len(),
@@ -312,8 +323,16 @@ fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [
             for k in near.saturating_sub(REACH)..=(near + REACH).min(last) {
                 let along = nodes[k + 1] - nodes[k];
                 let t = (p - nodes[k]).dot(&along) / along.norm_squared();
-                let low = if k == 0 && !path.closed { f64::NEG_INFINITY } else { 0.0 };
-                let high = if k == last && !path.closed { f64::INFINITY } else { 1.0 };
+                let low = if k == 0 && !path.closed {
+                    f64::NEG_INFINITY
+                } else {
+                    0.0
+                };
+                let high = if k == last && !path.closed {
+                    f64::INFINITY
+                } else {
+                    1.0
+                };
                 let t = t.clamp(low, high);
                 let distance = (p - (nodes[k] + along * t)).norm();
                 if distance < best.0 {
@@ -333,8 +352,16 @@ fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [
     for (u, _) in parameters.iter_mut().zip(&counts).filter(|(_, c)| !**c) {
         *u = u.clamp(0.0, total);
     }
-    let low = parameters.iter().copied().fold(0.0, f64::min).max(-2.0 * path.side);
-    let high = parameters.iter().copied().fold(total, f64::max).min(total + 2.0 * path.side);
+    let low = parameters
+        .iter()
+        .copied()
+        .fold(0.0, f64::min)
+        .max(-2.0 * path.side);
+    let high = parameters
+        .iter()
+        .copied()
+        .fold(total, f64::max)
+        .min(total + 2.0 * path.side);
     for u in &mut parameters {
         *u = (*u - low).clamp(0.0, high - low);
     }
@@ -348,7 +375,11 @@ fn refine<const D: usize>(
     first: &Traced,
     control: &dyn Control,
 ) -> Result<Traced, FitError> {
-    let intervals = if first.closed { points.len() } else { points.len() - 1 };
+    let intervals = if first.closed {
+        points.len()
+    } else {
+        points.len() - 1
+    };
     let least = if first.closed { 2 * degree + 2 } else { 1 };
     let spans = FIRST_SPANS.min(intervals).max(least);
     let data = (&first.parameters[..], first.domain, first.closed);
@@ -394,7 +425,11 @@ fn refine<const D: usize>(
         .filter(|((_, w), size)| **w > 0.0 && **size < FAR * noise)
         .map(|((s, _), _)| *s)
         .collect();
-    let kept = if kept.len() > 1 { kept } else { parameters.clone() };
+    let kept = if kept.len() > 1 {
+        kept
+    } else {
+        parameters.clone()
+    };
     let domain = ends(&kept, noise);
     for s in &mut parameters {
         *s = s.clamp(domain[0], domain[1]);

@@ -237,7 +237,8 @@ impl<'a, const D: usize> Walk<'a, D> {
             // A foot that agrees in some axes only may be farther away than it
             // was: it waits.
             let each = self.springs.feet.iter_mut().zip(&feet).zip(&self.rooms);
-            each.filter(|(_, c)| **c <= 0.0).for_each(|((u, before), _)| *u = *before);
+            each.filter(|(_, c)| **c <= 0.0)
+                .for_each(|((u, before), _)| *u = *before);
             self.rooms = self.all_rooms(terms);
         }
         for (z, c) in self.duals.iter_mut().zip(&self.rooms) {
