@@ -10,7 +10,7 @@ use bytes::Bytes;
 use http_body_util::BodyExt;
 use mouldloft::geometry::{BSplineCurve, BSplineSurface};
 use mouldloft::http::engine::run_with;
-use mouldloft::http::{Api, Limits, Metrics, router};
+use mouldloft::http::{Api, Engine, Limits, Metrics, router};
 use mouldloft::jobs::{self, Queue, QueueConfig};
 use mouldloft::methods::hull_plates::outcome::{
     Deviation, Fan, MovedPoint, Outcome, OutcomeProfile, Plate, PlateDiagnostics, Ruling,
@@ -92,15 +92,30 @@ pub async fn idle_service() -> Service {
     .await
 }
 
+/// A service that fits in earnest.
+pub async fn real_service() -> Service {
+    let config = QueueConfig {
+        workers: 1,
+        ..QueueConfig::default()
+    };
+    service_around(Arc::new(Engine), config, Limits::default()).await
+}
+
 pub async fn service_with(config: QueueConfig, limits: Limits) -> Service {
+    service_around(Arc::new(TestEngine), config, limits).await
+}
+
+async fn service_around(
+    engine: Arc<dyn jobs::Engine>,
+    config: QueueConfig,
+    limits: Limits,
+) -> Service {
     let metrics = Metrics::new();
     let config = QueueConfig {
         data_dir: None,
         ..config
     };
-    let queue = Queue::open(config, Arc::new(TestEngine), metrics.clone())
-        .await
-        .unwrap();
+    let queue = Queue::open(config, engine, metrics.clone()).await.unwrap();
     let api = Api::new(queue.clone(), metrics)
         .unwrap()
         .with_limits(limits);
