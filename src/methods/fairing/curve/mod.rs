@@ -36,8 +36,11 @@
 //! * A slip at an end of the curve cannot be told from its shape.
 //! * Ends: tangent and curvature there rest on few points.
 
+mod bounded;
 mod cells;
+mod checks;
 mod energy;
+mod extent;
 mod fairness;
 mod free;
 mod holds;
@@ -57,6 +60,7 @@ mod start;
 mod stiffness;
 mod trace;
 mod tree;
+mod walls;
 mod within;
 
 pub use outcome::Outcome;

@@ -20,12 +20,13 @@
 //! span an interval its curvature on a half circle of 13 points sags by 0.6 %
 //! between knots.
 
+use super::bounded::worst;
 use super::energy::{Energy, Quadratic};
 use super::free::{Shape, first_shape};
 use super::holds::Holds;
 use super::input::{Task, degree_of};
 use super::request::Request;
-use super::solve::{Solved, Traced, worst};
+use super::solve::{Solved, Traced};
 use super::space::Space;
 use super::springs::Springs;
 use super::stiffness::Choice;
