@@ -131,6 +131,11 @@ fn check_shape_options(request: &Request, issues: &mut Complaints) {
             issues.add(&["options", "energy"], "no-energy", message, None);
         }
     }
+    check_ends(request, issues);
+}
+
+fn check_ends(request: &Request, issues: &mut Complaints) {
+    let o = &request.options;
     for (k, end) in ["0", "1"].into_iter().enumerate() {
         if let Some(t) = o.end_tangents[k]
             && !(t.iter().all(|c| c.is_finite()) && t.norm() > 0.0)

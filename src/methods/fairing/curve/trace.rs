@@ -14,7 +14,7 @@
 
 use super::cells::{Cell, cells};
 use super::extent::{Lengths, ends};
-use super::free::{first_shape, settle};
+use super::free::{Shape, first_shape, settle};
 use super::holds::Holds;
 use super::slips::spread;
 use super::solve::Traced;
@@ -302,10 +302,40 @@ fn branches<const D: usize>(
     }
 }
 
+/// A polygon with its lengths.
+struct Line<'a, const D: usize> {
+    nodes: &'a [Vector<D>],
+    length: &'a [f64],
+    closed: bool,
+}
+
+impl<const D: usize> Line<'_, D> {
+    /// Length up to the nearest place to `p` within two sides of node `near`;
+    /// beyond the ends of an open line on its last sides.
+    fn nearest(&self, p: &Vector<D>, near: usize) -> f64 {
+        const REACH: usize = 2;
+        let last = self.nodes.len() - 2;
+        let mut best = (f64::INFINITY, 0.0);
+        for k in near.saturating_sub(REACH)..=(near + REACH).min(last) {
+            let from = self.nodes[k];
+            let along = self.nodes[k + 1] - from;
+            let t = (p - from).dot(&along) / along.norm_squared();
+            let ends = [k == 0 && !self.closed, k == last && !self.closed];
+            let low = if ends[0] { f64::NEG_INFINITY } else { 0.0 };
+            let high = if ends[1] { f64::INFINITY } else { 1.0 };
+            let t = t.clamp(low, high);
+            let distance = (p - (from + along * t)).norm();
+            if distance < best.0 {
+                best = (distance, self.length[k] + t * along.norm());
+            }
+        }
+        best.1
+    }
+}
+
 /// Parameters by projection on the path, near each point's cell; points
 /// beyond an end get parameters beyond it.
 fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [f64; 2]) {
-    const REACH: usize = 2;
     let mut nodes = path.nodes.clone();
     if path.closed {
         nodes.push(path.nodes[0]);
@@ -315,34 +345,13 @@ fn project<const D: usize>(points: &[Vector<D>], path: &Path<D>) -> (Vec<f64>, [
         length.push(length[length.len() - 1] + (w[1] - w[0]).norm());
     }
     let total = length[length.len() - 1];
-    let last = nodes.len() - 2;
-    let mut parameters: Vec<f64> = points
-        .iter()
-        .zip(&path.near)
-        .map(|(p, near)| {
-            let mut best = (f64::INFINITY, 0.0);
-            for k in near.saturating_sub(REACH)..=(near + REACH).min(last) {
-                let along = nodes[k + 1] - nodes[k];
-                let t = (p - nodes[k]).dot(&along) / along.norm_squared();
-                let low = if k == 0 && !path.closed {
-                    f64::NEG_INFINITY
-                } else {
-                    0.0
-                };
-                let high = if k == last && !path.closed {
-                    f64::INFINITY
-                } else {
-                    1.0
-                };
-                let t = t.clamp(low, high);
-                let distance = (p - (nodes[k] + along * t)).norm();
-                if distance < best.0 {
-                    best = (distance, length[k] + t * along.norm());
-                }
-            }
-            best.1
-        })
-        .collect();
+    let line = Line {
+        nodes: &nodes,
+        length: &length,
+        closed: path.closed,
+    };
+    let each = points.iter().zip(&path.near);
+    let mut parameters: Vec<f64> = each.map(|(p, near)| line.nearest(p, *near)).collect();
     if path.closed {
         return (parameters, [0.0, total]);
     }
@@ -396,20 +405,26 @@ fn refine<const D: usize>(
     let broken = || FitError::Numerical("the points do not determine a curve".into());
     let mut shape = first_shape(space, &springs, None).ok_or_else(broken)?;
     settle(&mut shape, &mut springs, &mut Holds::none(), control)?;
+    Ok(along_arc(first, &shape, springs))
+}
+
+/// Parameters by arc length of a first fit, points beyond its ends on the
+/// tangents there.
+fn along_arc<const D: usize>(first: &Traced, shape: &Shape<D>, mut springs: Springs<D>) -> Traced {
     // The pinned ends were a guess: now every point has a foot.
     springs.pinned.fill(false);
     let [a, b] = shape.space.domain();
     springs.refresh(&shape.space, &shape.x, 0.05 * (b - a));
-    let lengths = Lengths::new(&shape);
+    let lengths = Lengths::new(shape);
     let mut parameters: Vec<f64> = springs.feet.iter().map(|u| lengths.at(*u)).collect();
     if first.closed {
         let domain = [0.0, lengths.total()];
-        return Ok(Traced {
+        return Traced {
             parameters,
             domain,
             closed: true,
             doubtful: first.doubtful.clone(),
-        });
+        };
     }
     // Beyond the ends on the tangents.
     let residuals = springs.residuals(&shape.space, &shape.x);
@@ -435,12 +450,12 @@ fn refine<const D: usize>(
     for s in &mut parameters {
         *s = s.clamp(domain[0], domain[1]);
     }
-    Ok(Traced {
+    Traced {
         parameters,
         domain,
         closed: false,
         doubtful: first.doubtful.clone(),
-    })
+    }
 }
 
 fn extremes(parameters: &[f64], weights: &[f64]) -> [usize; 2] {
