@@ -12,8 +12,9 @@ use nalgebra::SMatrix;
 /// this factor or more.
 const HOLD: f64 = 1e3;
 /// Weight of straightness against the same: no multiplier, but enough that
-/// what is left of a bend cannot be seen.
-const STRAIGHT: f64 = 1e2;
+/// what is left of a bend cannot be seen (κL of 1e-4); a hundred times more
+/// and the line turns too slowly to where its points are.
+const STRAIGHT: f64 = 1e-2;
 
 /// One condition at a parameter.
 #[derive(Debug, Clone)]

@@ -16,8 +16,9 @@ use rayon::prelude::*;
 const CHUNK: usize = 4096;
 /// Newton steps a refresh may take; from the former foot two suffice.
 const NEWTON_STEPS: usize = 8;
-/// A step below this share of the domain ends Newton's method.
-const SETTLED: f64 = 1e-13;
+/// A step below this share of the domain is the last: convergence being
+/// quadratic, it leaves rounding.
+const SETTLED: f64 = 1e-8;
 
 /// The points with their feet.
 #[derive(Debug, Clone)]
@@ -274,10 +275,10 @@ fn foot<const D: usize>(
         let step = (slope / curve).clamp(-reach, reach);
         let next = space.wrap(u + step);
         let moved = (next - u).abs();
-        u = next;
         if moved <= SETTLED * (b - a) {
-            break;
+            return next;
         }
+        u = next;
     }
     best.1
 }
