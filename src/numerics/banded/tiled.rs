@@ -47,7 +47,7 @@ impl TiledFactor {
     ) -> Result<Self, NotPositiveDefinite> {
         let order = matrix.order();
         let columns = order.div_ceil(TILE);
-        let reach = (half_bandwidth + TILE - 1) / TILE + 1;
+        let reach = half_bandwidth.div_ceil(TILE) + 1;
         let mut factor = TiledFactor {
             order,
             reach,

@@ -7,6 +7,7 @@
 //! distance), so that two or three steps do where points are near.
 
 use super::net::{Sheet, Tangents};
+use crate::solver::{Control, Stop};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
@@ -106,17 +107,29 @@ fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> ([f64; 2], f64) {
     (step, step[0] * slope[0] + step[1] * slope[1])
 }
 
+/// Points between two looks at the control: well below a tenth of a second.
+const BLOCK: usize = 65_536;
+
 /// Feet of all points, in parallel.
+///
+/// # Errors
+/// [`Stop`] when the control says so.
 pub(in super::super) fn feet(
     sheet: &Sheet,
-    points: &[Vector3<f64>],
-    starts: &[[f64; 2]],
+    (points, starts): (&[Vector3<f64>], &[[f64; 2]]),
     steps: usize,
-) -> Vec<Foot> {
-    points
-        .par_iter()
-        .zip(starts)
-        .with_min_len(512)
-        .map(|(p, at)| foot(sheet, p, *at, steps))
-        .collect()
+    control: &dyn Control,
+) -> Result<Vec<Foot>, Stop> {
+    let mut all = Vec::with_capacity(points.len());
+    for (points, starts) in points.chunks(BLOCK).zip(starts.chunks(BLOCK)) {
+        control.check()?;
+        all.par_extend(
+            points
+                .par_iter()
+                .zip(starts)
+                .with_min_len(512)
+                .map(|(p, at)| foot(sheet, p, *at, steps)),
+        );
+    }
+    Ok(all)
 }

@@ -165,3 +165,44 @@ pub(in super::super) fn springs_to(
         weight: weight.to_vec(),
     }
 }
+
+/// The same springs with the held coordinates at zero: they must not speak
+/// of the noise.
+pub(in super::super) fn free_only(springs: &Springs<3>, freedom: [bool; 3]) -> Springs<3> {
+    let mut masked = springs.clone();
+    for value in &mut masked.value {
+        for (v, _) in value.iter_mut().zip(freedom).filter(|(_, free)| !free) {
+            *v = 0.0;
+        }
+    }
+    masked
+}
+
+impl Fit {
+    /// Springs to about `most` of the points, as stiff together as all.
+    pub(in super::super) fn sampled(&self, points: &[Vector3<f64>], most: usize) -> Springs<3> {
+        let stride = points.len().div_ceil(most).max(1);
+        let thin = |i: &usize| i % stride == 0;
+        let kept: Vec<usize> = (0..points.len()).filter(thin).collect();
+        Springs {
+            at: kept.iter().map(|i| self.at[*i]).collect(),
+            value: kept.iter().map(|i| points[*i].into()).collect(),
+            weight: kept
+                .iter()
+                .map(|i| self.weight[*i] * stride as f64)
+                .collect(),
+        }
+    }
+
+    /// The sheet of other control points on the same net, its held coordinates
+    /// those of this fit.
+    pub(in super::super) fn with_held(&self, control: &[[f64; 3]], freedom: [bool; 3]) -> Sheet {
+        let mut sheet = Sheet::of_points(&self.sheet.net, control);
+        for (p, own) in sheet.control.iter_mut().zip(&self.sheet.control) {
+            for d in (0..3).filter(|d| !freedom[*d]) {
+                p[d] = own[d];
+            }
+        }
+        sheet
+    }
+}

@@ -2,7 +2,7 @@
 //! are fitted at once, order of the energy and stiffness from the data.
 
 use super::energy::Energy;
-use super::fit::{Fit, energy, robust, springs_to};
+use super::fit::{Fit, energy, free_only, robust, springs_to};
 use super::grid::parameters;
 use super::net::{Net, Sheet};
 use super::springs::{Normal, Springs, gather};
@@ -121,18 +121,6 @@ pub(in super::super) fn stretched<const D: usize>(
         }
     }
     Ok((best, model))
-}
-
-/// The same springs with the held coordinates at zero: they must not speak
-/// of the noise.
-fn free_only(springs: &Springs<3>, freedom: [bool; 3]) -> Springs<3> {
-    let mut masked = springs.clone();
-    for value in &mut masked.value {
-        for (v, _) in value.iter_mut().zip(freedom).filter(|(_, free)| !free) {
-            *v = 0.0;
-        }
-    }
-    masked
 }
 
 /// Replaces the coordinates that must not move by those that interpolate.

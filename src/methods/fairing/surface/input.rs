@@ -230,6 +230,15 @@ fn options(request: &Request, issues: &mut Vec<Issue>) {
         }
     }
     freedom(request, issues);
+    shape(o, issues);
+    if !(o.light.iter().all(|x| x.is_finite()) && o.light.norm() > 0.0) {
+        let message = "the direction of the light has no length";
+        issues.push(issue(&["options", "light"], "not-positive", message, None));
+    }
+}
+
+/// Energy, border and control points.
+fn shape(o: &Options, issues: &mut Vec<Issue>) {
     if let Some(e) = &o.energy {
         let all = [e.alpha11, e.alpha22, e.beta11, e.beta12, e.beta22];
         let ok = all.iter().all(|w| w.is_finite() && *w >= 0.0);
@@ -267,10 +276,6 @@ fn options(request: &Request, issues: &mut Vec<Issue>) {
             message,
             None,
         ));
-    }
-    if !(o.light.iter().all(|x| x.is_finite()) && o.light.norm() > 0.0) {
-        let message = "the direction of the light has no length";
-        issues.push(issue(&["options", "light"], "not-positive", message, None));
     }
 }
 

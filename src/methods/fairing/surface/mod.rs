@@ -134,7 +134,8 @@ pub(super) fn bounded(
         axes: (!task.slides()).then_some(task.freedom),
     };
     let at = if task.slides() {
-        fit::places(&tolerance::exact_feet(&fit.sheet, &task.points, &fit.at))
+        let feet = tolerance::exact_feet(&fit.sheet, &task.points, &fit.at, control)?;
+        fit::places(&feet)
     } else {
         fit.at.clone()
     };

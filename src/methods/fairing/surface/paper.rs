@@ -4,7 +4,7 @@
 //! lowered while it is far below; feet anew each time. The first shape comes
 //! from the border alone, as in STEP1, where the layout has one.
 
-use super::feet::feet;
+use super::feet::{Foot, feet};
 use super::fit::{Fit, energy, places, springs_to};
 use super::net::{Net, Sheet};
 use super::request::EnergyWeights;
@@ -14,6 +14,7 @@ use super::task::{Layout, Task};
 use super::tolerance::{Bounded, exact_feet};
 use crate::geometry::Knots;
 use crate::methods::FitError;
+use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
 
 /// Degree of the paper's surfaces.
@@ -35,6 +36,25 @@ const CHANGES: usize = 60;
 /// Feet steps a change.
 const FOOT_STEPS: usize = 4;
 
+/// A sheet of the loop.
+struct Trial {
+    /// Largest distance in tolerances.
+    worst: f64,
+    /// 1/K.
+    lambda: f64,
+    sheet: Sheet,
+    at: Vec<[f64; 2]>,
+}
+
+/// What stays the same in the loop.
+struct Springs<'a> {
+    task: &'a Task,
+    net: Net,
+    energy: EnvelopeMatrix,
+    model: Likelihood,
+    tolerance: Vec<f64>,
+}
+
 /// Fits by the paper's loop; parameters start from those of `start`.
 ///
 /// # Errors
@@ -46,76 +66,126 @@ pub(super) fn fit(
 ) -> Result<(Fit, Option<Bounded>), FitError> {
     let net = net(task, &start)?;
     let term = energy(Some(task.energy.unwrap_or(BENDING)), (2, 1.0), net.domain());
-    let matrix = term.matrix(&net);
-    let model = Likelihood {
-        free: term.free_dimension(DEGREE),
-        components: 3.0,
+    let springs = Springs {
+        task,
+        energy: term.matrix(&net),
+        model: Likelihood {
+            free: term.free_dimension(DEGREE),
+            components: 3.0,
+        },
+        tolerance: task.tolerance.clone().unwrap_or_default(),
+        net,
     };
-    let tolerance = task.tolerance.clone().unwrap_or_default();
-    let mut at = start.at.clone();
-    let mut lambda = start.lambda;
-    let mut sliding = first_shape(task, &net, (&matrix, model, lambda))
-        .map(|sheet| places(&feet(&sheet, &task.points, &at, FOOT_STEPS)));
-    let mut best: Option<(f64, f64, Sheet, Vec<[f64; 2]>)> = None;
-    let mut last_raised: Option<bool> = None;
-    for _ in 0..CHANGES {
-        control.check()?;
-        if let Some(s) = sliding.take() {
-            at = s;
-        }
-        let normal = gather(&net, &springs_to(&task.points, &at, &task.weight));
-        let Some(chosen) = fit_with(&normal, &matrix, lambda, model) else {
-            break;
-        };
-        let sheet = Sheet::of_points(&net, &chosen.control);
-        let now = feet(&sheet, &task.points, &at, FOOT_STEPS);
-        let worst = now
-            .iter()
-            .zip(&tolerance)
-            .map(|(f, e)| f.distance() / e)
-            .fold(0.0, f64::max);
-        at = places(&now);
-        let better = best.as_ref().is_none_or(|(w, l, ..)| {
-            if worst <= 1.0 {
-                *w > 1.0 || lambda > *l
-            } else {
-                worst < *w
-            }
-        });
-        if better {
-            best = Some((worst, lambda, sheet, at.clone()));
-        }
-        let raise = worst > 1.0;
-        let settled = !raise && (worst > FAR_BELOW || last_raised == Some(true));
-        if settled {
-            break;
-        }
-        lambda = if raise { lambda / STEP } else { lambda * STEP };
-        last_raised = Some(raise);
-    }
-    let (_, lambda, sheet, at) =
-        best.ok_or_else(|| FitError::Numerical("no spring stiffness gives a sheet".into()))?;
-    let exact = exact_feet(&sheet, &task.points, &at);
-    let ratio = exact.iter().zip(&tolerance).map(|(f, e)| f.distance() / e);
+    let first = springs.first_shape(start.lambda);
+    let at = match first {
+        Some(sheet) => places(&feet(
+            &sheet,
+            (&task.points, &start.at),
+            FOOT_STEPS,
+            control,
+        )?),
+        None => start.at.clone(),
+    };
+    let best = springs
+        .settle(start.lambda, at, control)?
+        .ok_or_else(|| FitError::Numerical("no spring stiffness gives a sheet".into()))?;
+    let exact = exact_feet(&best.sheet, &task.points, &best.at, control)?;
+    let pull = |f: &Foot| -f.signed() / best.lambda;
     let bounded = Bounded {
-        worst: ratio.fold(0.0, f64::max),
+        worst: springs.worst(&exact),
         at: places(&exact),
-        duals: exact
-            .iter()
-            .map(|f| f.signed() / lambda)
-            .map(|d| -d)
-            .collect(),
-        sheet: sheet.clone(),
+        duals: exact.iter().map(pull).collect(),
+        sheet: best.sheet.clone(),
     };
     let fit = Fit {
-        sheet,
-        at,
-        lambda,
-        energy: matrix,
-        model,
+        sheet: best.sheet,
+        at: best.at,
+        lambda: best.lambda,
+        energy: springs.energy,
+        model: springs.model,
         ..start
     };
     Ok((fit, Some(bounded)))
+}
+
+impl Springs<'_> {
+    fn worst(&self, feet: &[Foot]) -> f64 {
+        let ratios = feet
+            .iter()
+            .zip(&self.tolerance)
+            .map(|(f, e)| f.distance() / e);
+        ratios.fold(0.0, f64::max)
+    }
+
+    /// STEP2 to STEP4: the softest sheet within the tolerance that the loop
+    /// meets, or the nearest to it.
+    fn settle(
+        &self,
+        start: f64,
+        mut at: Vec<[f64; 2]>,
+        control: &dyn Control,
+    ) -> Result<Option<Trial>, FitError> {
+        let points = &self.task.points;
+        let mut lambda = start;
+        let mut best: Option<Trial> = None;
+        let mut was_raised = false;
+        for _ in 0..CHANGES {
+            control.check()?;
+            let normal = gather(&self.net, &springs_to(points, &at, &self.task.weight));
+            let Some(chosen) = fit_with(&normal, &self.energy, lambda, self.model) else {
+                break;
+            };
+            let sheet = Sheet::of_points(&self.net, &chosen.control);
+            let now = feet(&sheet, (points, &at), FOOT_STEPS, control)?;
+            let worst = self.worst(&now);
+            at = places(&now);
+            let better = best.as_ref().is_none_or(|b| {
+                if worst <= 1.0 {
+                    b.worst > 1.0 || lambda > b.lambda
+                } else {
+                    worst < b.worst
+                }
+            });
+            if better {
+                let at = at.clone();
+                best = Some(Trial {
+                    worst,
+                    lambda,
+                    sheet,
+                    at,
+                });
+            }
+            let raise = worst > 1.0;
+            if !raise && (worst > FAR_BELOW || was_raised) {
+                break;
+            }
+            lambda = if raise { lambda / STEP } else { lambda * STEP };
+            was_raised = raise;
+        }
+        Ok(best)
+    }
+
+    /// STEP1: the sheet of the border points alone.
+    fn first_shape(&self, lambda: f64) -> Option<Sheet> {
+        let Layout::Grid { cell, size } = &self.task.layout else {
+            return None;
+        };
+        let border = |c: &[usize; 2]| (0..2).any(|k| c[k] == 0 || c[k] + 1 == size[k]);
+        let start = super::grid::parameters(self.task, DEGREE).ok()?;
+        let weight: Vec<f64> = cell
+            .iter()
+            .zip(&self.task.weight)
+            .map(|(c, w)| if border(c) { *w } else { 0.0 })
+            .collect();
+        let springs = springs_to(&self.task.points, &start.at, &weight);
+        let chosen = fit_with(
+            &gather(&self.net, &springs),
+            &self.energy,
+            lambda,
+            self.model,
+        )?;
+        Some(Sheet::of_points(&self.net, &chosen.control))
+    }
 }
 
 /// Uniform bicubic knots, as many control points as the start has (or as
@@ -128,25 +198,4 @@ fn net(task: &Task, start: &Fit) -> Result<Net, FitError> {
             .map_err(|e| FitError::Numerical(e.to_string()))
     };
     Ok(Net::new([knots(0)?, knots(1)?]))
-}
-
-/// The sheet of the border points alone.
-fn first_shape(
-    task: &Task,
-    net: &Net,
-    (energy, model, lambda): (&crate::numerics::EnvelopeMatrix, Likelihood, f64),
-) -> Option<Sheet> {
-    let Layout::Grid { cell, size } = &task.layout else {
-        return None;
-    };
-    let border = |c: &[usize; 2]| (0..2).any(|k| c[k] == 0 || c[k] + 1 == size[k]);
-    let start = super::grid::parameters(task, net.degree()).ok()?;
-    let weight: Vec<f64> = cell
-        .iter()
-        .zip(&task.weight)
-        .map(|(c, w)| if border(c) { *w } else { 0.0 })
-        .collect();
-    let normal = gather(net, &springs_to(&task.points, &start.at, &weight));
-    let chosen = fit_with(&normal, energy, lambda, model)?;
-    Some(Sheet::of_points(net, &chosen.control))
 }

@@ -2,11 +2,11 @@
 
 use super::diagnose::diagnose;
 use super::feet::Foot;
-use super::fit::{Fit, springs_to};
+use super::fit::Fit;
 use super::net::Sheet;
 use super::outcome::{Active, Move, Outcome, Parametrisation, Slip, TradeOff};
 use super::region::Region;
-use super::springs::{Normal, Springs, gather};
+use super::springs::{Normal, gather};
 use super::stiffness::fit_with;
 use super::task::Task;
 use super::tolerance::{Bounded, energy_of, exact_feet};
@@ -54,9 +54,9 @@ pub(super) fn outcome(found: Found, control: &dyn Control) -> Result<Outcome, Fi
         None => (&fit.sheet, &fit.at),
     };
     control.progress("measuring", 88.0);
-    let moves = moves(task, sheet, at);
+    let moves = moves(task, (sheet, at), control)?;
     control.check()?;
-    let normal = gather(&fit.sheet.net, &sampled(task, fit));
+    let normal = gather(&fit.sheet.net, &fit.sampled(&task.points, TRADE_SAMPLE));
     let before = before(task, fit, &normal).unwrap_or_else(|| fit.sheet.clone());
     let figures = |s: &Sheet| diagnose((s, &fit.energy), found.region, task);
     let (after, isophotes) = figures(sheet);
@@ -105,18 +105,13 @@ fn surface(task: &Task, sheet: &Sheet) -> Result<BSplineSurface, FitError> {
         .map_err(|e| FitError::Numerical(e.to_string()))
 }
 
-/// Springs to a sample of the points, as stiff together as all.
-fn sampled(task: &Task, fit: &Fit) -> Springs<3> {
-    let stride = task.points.len().div_ceil(TRADE_SAMPLE).max(1);
-    let points: Vec<_> = task.points.iter().step_by(stride).copied().collect();
-    let at: Vec<_> = fit.at.iter().step_by(stride).copied().collect();
-    let weight = fit.weight.iter().step_by(stride).map(|w| w * stride as f64);
-    springs_to(&points, &at, &weight.collect::<Vec<_>>())
-}
-
-fn moves(task: &Task, sheet: &Sheet, at: &[[f64; 2]]) -> Vec<Move> {
+fn moves(
+    task: &Task,
+    (sheet, at): (&Sheet, &[[f64; 2]]),
+    control: &dyn Control,
+) -> Result<Vec<Move>, FitError> {
     let feet: Vec<Foot> = if task.slides() {
-        exact_feet(sheet, &task.points, at)
+        exact_feet(sheet, &task.points, at, control)?
     } else {
         let stay = |(p, at): (&nalgebra::Vector3<f64>, &[f64; 2])| {
             let tangents = sheet.tangents(*at);
@@ -128,7 +123,8 @@ fn moves(task: &Task, sheet: &Sheet, at: &[[f64; 2]]) -> Vec<Move> {
         };
         task.points.iter().zip(at).map(stay).collect()
     };
-    feet.par_iter()
+    let moves = feet
+        .par_iter()
         .zip(&task.index)
         .with_min_len(512)
         .map(|(foot, index)| Move {
@@ -137,25 +133,15 @@ fn moves(task: &Task, sheet: &Sheet, at: &[[f64; 2]]) -> Vec<Move> {
             at: foot.at,
             distance: foot.signed() * task.frame.size,
         })
-        .collect()
+        .collect();
+    Ok(moves)
 }
 
 fn before(task: &Task, fit: &Fit, normal: &Normal<3>) -> Option<Sheet> {
     BEFORE
         .iter()
         .find_map(|f| fit_with(normal, &fit.energy, f * fit.lambda, fit.model))
-        .map(|c| with_held(task, fit, &c.control))
-}
-
-/// The sheet of other control points, its held coordinates those of the fit.
-fn with_held(task: &Task, fit: &Fit, control: &[[f64; 3]]) -> Sheet {
-    let mut sheet = Sheet::of_points(&fit.sheet.net, control);
-    for (p, own) in sheet.control.iter_mut().zip(&fit.sheet.control) {
-        for d in (0..3).filter(|d| !task.freedom[*d]) {
-            p[d] = own[d];
-        }
-    }
-    sheet
+        .map(|c| fit.with_held(&c.control, task.freedom))
 }
 
 fn trade_off(
@@ -174,7 +160,7 @@ fn trade_off(
         let Some(c) = fit_with(normal, &fit.energy, factor * fit.lambda, fit.model) else {
             continue;
         };
-        let sheet = with_held(task, fit, &c.control);
+        let sheet = fit.with_held(&c.control, task.freedom);
         let (mut largest, mut square, mut count) = (0.0_f64, 0.0, 0usize);
         for (p, at) in task.points.iter().zip(&fit.at).step_by(stride) {
             let t = sheet.tangents(*at);

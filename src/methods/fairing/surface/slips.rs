@@ -6,7 +6,7 @@
 //! with leverage `h = bᵀM⁻¹b` and weight w the residual r becomes
 //! `r/(1 − wh)`, its variance `σ²(1 + h/(1 − wh))`.
 
-use super::fit::{Fit, median_scale, robust, springs_to};
+use super::fit::{Fit, free_only, median_scale, robust, springs_to};
 use super::net::Sheet;
 use super::outcome::Slip;
 use super::springs::{Normal, gather};
@@ -15,6 +15,7 @@ use super::task::{Layout, Task};
 use crate::methods::FitError;
 use crate::solver::Control;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 /// Up to so many points a robust fit is made for the purpose; beyond, single
 /// points do not bend the sheet any more.
@@ -31,74 +32,115 @@ const MOST: usize = 1000;
 const EXACT: usize = 40;
 /// Order × half bandwidth above which it is dear.
 const DEAR: usize = 400_000;
+/// Most of the data's freedom that a fit is taken to have used up, and least
+/// that a point is taken to have left: guards against division by nothing.
+const MOST_USED: f64 = 0.9;
+/// See [`MOST_USED`].
+const LEAST_KEPT: f64 = 1e-6;
 /// Noise below this share of the longest side is rounding.
 const ROUNDING: f64 = 1e-7;
+
+/// A sheet that slips have not bent, with what judges them.
+struct Judge<'a> {
+    task: &'a Task,
+    fit: &'a Fit,
+    sheet: Sheet,
+    weight: Vec<f64>,
+    /// Residual across the sheet and its direction, one a point.
+    residual: Vec<(f64, Vector3<f64>)>,
+    sigma: f64,
+    factor: Factor,
+}
 
 /// The suspected slips, worst first.
 ///
 /// # Errors
 /// [`FitError::Stopped`].
 pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec<Slip>, FitError> {
-    let springs = springs_to(&task.points, &fit.at, &task.weight);
+    let Some(judge) = judge(task, fit, control)? else {
+        return Ok(Vec::new());
+    };
+    control.check()?;
+    let size = |i: usize| judge.residual[i].0.abs();
+    let mut suspects: Vec<usize> = (0..task.points.len())
+        .filter(|i| size(*i) > LOOK * judge.sigma)
+        .collect();
+    suspects.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
     let net = &fit.sheet.net;
-    let (control_points, weight, lambda) = if task.points.len() <= ROBUST_UP_TO && !task.robust {
-        let near = (Some(fit.lambda), control);
-        let r = robust(net, &springs, (&fit.energy, fit.model), near)?;
-        (r.chosen.control, r.weight, r.chosen.lambda)
-    } else {
-        let control = fit.sheet.control.iter().map(|p| [p.x, p.y, p.z]).collect();
-        (control, fit.weight.clone(), fit.lambda)
-    };
-    let sheet = Sheet::of_points(net, &control_points);
-    let residual: Vec<(f64, Vector3<f64>)> = task
-        .points
-        .iter()
-        .zip(&fit.at)
-        .map(|(p, at)| across(&sheet, p, *at, task.freedom))
-        .collect();
-    let lengths: Vec<f64> = residual.iter().map(|r| r.0.abs()).collect();
-    let mut weighted = springs;
-    weighted.weight = weight;
-    let normal = gather(net, &weighted);
-    let Some(solved) = fit_with(&normal, &fit.energy, lambda, fit.model) else {
-        return Ok(Vec::new());
-    };
-    control.check()?;
-    let used = used(&normal, fit, (lambda, &solved.factor)) / lengths.len() as f64;
-    let sigma = (scale(&lengths) / (1.0 - used.clamp(0.0, 0.9)).sqrt()).max(ROUNDING);
-    let suspects: Vec<usize> = (0..lengths.len())
-        .filter(|i| lengths[*i] > LOOK * sigma)
-        .collect();
-    if suspects.is_empty() {
-        return Ok(Vec::new());
-    }
-    control.check()?;
-    let mut slips: Vec<Slip> = Vec::new();
-    let mut order = suspects;
-    order.sort_by(|a, b| lengths[*b].total_cmp(&lengths[*a]));
-    let mean = (net.len() as f64 / lengths.len() as f64).min(1.0);
-    let exact = if net.len() * net.half_bandwidth() > DEAR {
-        EXACT
-    } else {
-        2 * MOST
-    };
-    for (rank, i) in order.into_iter().take(2 * MOST).enumerate() {
+    let mean = (net.len() as f64 / task.points.len() as f64).min(1.0);
+    let dear = net.len() * net.half_bandwidth() > DEAR;
+    let exact = if dear { EXACT } else { 2 * MOST };
+    let mut slips = Vec::new();
+    for (rank, i) in suspects.into_iter().take(2 * MOST).enumerate() {
         let h = if rank < exact {
-            leverage(&sheet, fit.at[i], &solved.factor)
+            leverage(&judge.sheet, fit.at[i], &judge.factor)
         } else {
             mean
         };
-        let keep = (1.0 - weighted.weight[i] * h).max(1e-6);
-        let alone = residual[i].0 / keep;
-        let sigmas = alone.abs() / (sigma * (1.0 + h / keep).sqrt());
-        let confidence = 1.0 - (lengths.len() as f64 * two_sided(sigmas)).min(1.0);
-        if confidence >= CONFIDENCE {
-            slips.push(slip(task, i, (residual[i].1 * alone, sigmas, confidence)));
-        }
+        slips.extend(judge.verdict(i, h));
     }
     slips.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
     slips.truncate(MOST);
     Ok(slips)
+}
+
+/// Fits robustly where single points can bend the sheet; `None` where there is
+/// no solution.
+fn judge<'a>(
+    task: &'a Task,
+    fit: &'a Fit,
+    control: &dyn Control,
+) -> Result<Option<Judge<'a>>, FitError> {
+    let net = &fit.sheet.net;
+    let (mut springs, sheet, weight, lambda) = if task.points.len() > ROBUST_UP_TO || task.robust {
+        let springs = fit.sampled(&task.points, ROBUST_UP_TO);
+        (springs, fit.sheet.clone(), fit.weight.clone(), fit.lambda)
+    } else {
+        let springs = springs_to(&task.points, &fit.at, &task.weight);
+        let mut springs = free_only(&springs, task.freedom);
+        let near = (Some(fit.lambda), control);
+        let r = robust(net, &springs, (&fit.energy, fit.model), near)?;
+        let sheet = fit.with_held(&r.chosen.control, task.freedom);
+        springs.weight.clone_from(&r.weight);
+        (springs, sheet, r.weight, r.chosen.lambda)
+    };
+    springs = free_only(&springs, task.freedom);
+    let residual: Vec<(f64, Vector3<f64>)> = task
+        .points
+        .par_iter()
+        .zip(&fit.at)
+        .with_min_len(512)
+        .map(|(p, at)| across(&sheet, p, *at, task.freedom))
+        .collect();
+    let normal = gather(net, &springs);
+    let Some(solved) = fit_with(&normal, &fit.energy, lambda, fit.model) else {
+        return Ok(None);
+    };
+    control.check()?;
+    let lengths: Vec<f64> = residual.iter().map(|r| r.0.abs()).collect();
+    let used = used(&normal, fit, (lambda, &solved.factor)) / lengths.len() as f64;
+    let sigma = (scale(&lengths) / (1.0 - used.clamp(0.0, MOST_USED)).sqrt()).max(ROUNDING);
+    Ok(Some(Judge {
+        task,
+        fit,
+        sheet,
+        weight,
+        residual,
+        sigma,
+        factor: solved.factor,
+    }))
+}
+
+impl Judge<'_> {
+    /// The slip that point i is, given its leverage; `None` if it is none.
+    fn verdict(&self, i: usize, h: f64) -> Option<Slip> {
+        let (length, along) = self.residual[i];
+        let keep = (1.0 - self.weight[i] * h).max(LEAST_KEPT);
+        let alone = length / keep;
+        let sigmas = alone.abs() / (self.sigma * (1.0 + h / keep).sqrt());
+        let confidence = 1.0 - (self.fit.at.len() as f64 * two_sided(sigmas)).min(1.0);
+        (confidence >= CONFIDENCE).then(|| slip(self.task, i, (along * alone, sigmas, confidence)))
+    }
 }
 
 /// Degrees of freedom that a fit uses up, which its residuals lack:

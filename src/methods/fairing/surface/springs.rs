@@ -240,8 +240,8 @@ mod tests {
                     for (c, y) in row.iter().enumerate() {
                         dense[r][c] += springs.weight[i] * x * y;
                     }
-                    for d in 0..2 {
-                        rhs[r][d] += springs.weight[i] * x * springs.value[i][d];
+                    for (slot, value) in rhs[r].iter_mut().zip(springs.value[i]) {
+                        *slot += springs.weight[i] * x * value;
                     }
                 }
             }

@@ -15,7 +15,7 @@ use super::springs::Cells;
 use super::strips::Strips;
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
-use crate::solver::Control;
+use crate::solver::{Control, Stop};
 use nalgebra::Vector3;
 
 /// The points to be met.
@@ -83,19 +83,7 @@ pub(in super::super) fn within(
             break;
         };
         sheet = moved;
-        let ratio: Vec<f64> = match bounds.axes {
-            Some(_) => (0..at.len())
-                .map(|i| (bounds.points[i] - sheet.point(at[i])).norm() / bounds.tolerance[i])
-                .collect(),
-            None => {
-                let feet = feet(&sheet, bounds.points, &at, FOOT_STEPS);
-                at = feet.iter().map(|f| f.at).collect();
-                feet.iter()
-                    .zip(bounds.tolerance)
-                    .map(|(f, e)| f.distance() / e)
-                    .collect()
-            }
-        };
+        let ratio = ratios(&sheet, &mut at, bounds, control)?;
         let worst = ratio.iter().copied().fold(0.0, f64::max);
         for (n, r) in narrow.iter_mut().zip(&ratio) {
             *n *= (1.0 / r).min(1.0);
@@ -107,14 +95,7 @@ pub(in super::super) fn within(
             duals,
             worst,
         };
-        let better = best.as_ref().is_none_or(|(v, b)| {
-            if worst <= 1.0 && b.worst <= 1.0 {
-                value < *v
-            } else {
-                worst < b.worst
-            }
-        });
-        if better {
+        if best.as_ref().is_none_or(|b| is_better((value, worst), b)) {
             best = Some((value, trial));
         }
         if worst <= 1.0 && (before - value).abs() <= SETTLED * value {
@@ -123,6 +104,38 @@ pub(in super::super) fn within(
         before = value;
     }
     Ok(best.map_or_else(|| unmet(start, bounds), |(_, b)| b))
+}
+
+/// Distances in tolerances, at new feet where points slide.
+fn ratios(
+    sheet: &Sheet,
+    at: &mut [[f64; 2]],
+    bounds: Bounds,
+    control: &dyn Control,
+) -> Result<Vec<f64>, FitError> {
+    if bounds.axes.is_some() {
+        let one = |i: usize| (bounds.points[i] - sheet.point(at[i])).norm() / bounds.tolerance[i];
+        return Ok((0..at.len()).map(one).collect());
+    }
+    let feet = feet(sheet, (bounds.points, at), FOOT_STEPS, control)?;
+    for (place, foot) in at.iter_mut().zip(&feet) {
+        *place = foot.at;
+    }
+    let distances = feet.iter().map(Foot::distance);
+    Ok(distances
+        .zip(bounds.tolerance)
+        .map(|(d, e)| d / e)
+        .collect())
+}
+
+/// Whether a sheet (energy, worst distance in tolerances) beats another: by
+/// its energy where both keep the bounds, else by how nearly it does.
+fn is_better((value, worst): (f64, f64), (energy, other): &(f64, Bounded)) -> bool {
+    if worst <= 1.0 && other.worst <= 1.0 {
+        value < *energy
+    } else {
+        worst < other.worst
+    }
 }
 
 /// The start itself with its overrun, where no programme could be solved.
@@ -282,10 +295,14 @@ fn objective(
 }
 
 /// Feet of all points, as exact as tolerances need.
+///
+/// # Errors
+/// [`Stop`] when the control says so.
 pub(in super::super) fn exact_feet(
     sheet: &Sheet,
     points: &[Vector3<f64>],
     at: &[[f64; 2]],
-) -> Vec<Foot> {
-    feet(sheet, points, at, FOOT_STEPS)
+    control: &dyn Control,
+) -> Result<Vec<Foot>, Stop> {
+    feet(sheet, (points, at), FOOT_STEPS, control)
 }

@@ -19,6 +19,7 @@ use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 /// Rounds of feet and fits: on the nodes, on a level, at the end.
 const ROUNDS: [usize; 3] = [3, 1, 1];
@@ -77,14 +78,25 @@ pub(in super::super) fn fit(
         at: map.clone(),
         weight: nodes.count.iter().map(|n| *n as f64).collect(),
     };
-    let mut step = levels::first(task.points.len());
+    let step = levels::first(task.points.len());
     let mut level = on_level(task, (domain, step), &cloud, (None, control))?;
     for _ in 0..ROUNDS[0] {
         refine(task, &mut level, &mut cloud, (false, control))?;
     }
     let stride = task.points.len().div_ceil(SAMPLE).max(1);
-    let mut sample = seated(task, nodes, (&level.sheet(), &cloud.at), stride);
+    let mut sample = seated(task, nodes, (&level.sheet(), &cloud.at), (stride, control))?;
     refine(task, &mut level, &mut sample, (true, control))?;
+    let level = finer(task, (domain, step), (level, &mut sample), control)?;
+    finish(task, level, (sample, nodes, &cloud.at), control)
+}
+
+/// From a coarse level to one that is fine enough for the sample.
+fn finer(
+    task: &Task,
+    (domain, mut step): ([[f64; 2]; 2], Step),
+    (mut level, sample): (Level, &mut Cloud),
+    control: &dyn Control,
+) -> Result<Level, FitError> {
     let lengths = domain.map(|[a, b]| b - a);
     let density = task.weight.iter().sum::<f64>() / (lengths[0] * lengths[1]);
     let longer = lengths[0].max(lengths[1]);
@@ -93,27 +105,27 @@ pub(in super::super) fn fit(
         let Some(finer) = (match fine {
             Some(finer) => Some(finer),
             None => {
-                let feet = feet(&level.sheet(), &sample.points, &sample.at, FOOT_STEPS);
+                let seats = (sample.points.as_slice(), sample.at.as_slice());
+                let feet = feet(&level.sheet(), seats, FOOT_STEPS, control)?;
                 let residuals: Vec<f64> = feet.iter().map(Foot::signed).collect();
                 let rest = levels::leftover((domain, step), &sample.at, &residuals)?;
                 levels::beyond(step, rest)
             }
         }) else {
-            break;
+            return Ok(level);
         };
         let net = levels::net(domain, finer, None)?;
         if !levels::affordable(&net, task.points.len()) || task.control_points.is_some() {
-            break;
+            return Ok(level);
         }
         control.progress("fitting", 5.0 + 0.3 * finer.spans as f64);
         let near = (finer.space == step.space).then_some(level.chosen.lambda);
-        level = on_level(task, (domain, finer), &sample, (near, control))?;
+        level = on_level(task, (domain, finer), sample, (near, control))?;
         for _ in 0..ROUNDS[1] {
-            refine(task, &mut level, &mut sample, (true, control))?;
+            refine(task, &mut level, sample, (true, control))?;
         }
         step = finer;
     }
-    finish(task, level, (sample, nodes, &cloud.at), control)
 }
 
 /// The last rounds, with all points.
@@ -126,7 +138,7 @@ fn finish(
     let mut all = if sample.points.len() == task.points.len() {
         sample
     } else {
-        seated(task, nodes, (&level.sheet(), map), 1)
+        seated(task, nodes, (&level.sheet(), map), (1, control))?
     };
     for _ in 0..ROUNDS[2] {
         control.check()?;
@@ -176,7 +188,12 @@ fn refine(
     (search, control): (bool, &dyn Control),
 ) -> Result<(), FitError> {
     control.check()?;
-    let feet = feet(&level.sheet(), &cloud.points, &cloud.at, FOOT_STEPS);
+    let feet = feet(
+        &level.sheet(),
+        (&cloud.points, &cloud.at),
+        FOOT_STEPS,
+        control,
+    )?;
     cloud.at = places(&feet);
     let mut springs = springs_to(&cloud.points, &cloud.at, &cloud.weight);
     if task.robust {
@@ -198,16 +215,22 @@ fn refine(
 }
 
 /// Every `stride`-th point with its foot on a sheet, from its node's place.
-fn seated(task: &Task, nodes: &Nodes, (sheet, map): (&Sheet, &[[f64; 2]]), stride: usize) -> Cloud {
+fn seated(
+    task: &Task,
+    nodes: &Nodes,
+    (sheet, map): (&Sheet, &[[f64; 2]]),
+    (stride, control): (usize, &dyn Control),
+) -> Result<Cloud, FitError> {
     let points: Vec<Vector3<f64>> = task.points.iter().step_by(stride).copied().collect();
     let starts: Vec<[f64; 2]> = points
-        .iter()
+        .par_iter()
+        .with_min_len(512)
         .map(|p| map[nodes.at(p).unwrap_or_else(|| nodes.nearest(p))])
         .collect();
-    let at = places(&feet(sheet, &points, &starts, 2 * FOOT_STEPS));
-    Cloud {
+    let at = places(&feet(sheet, (&points, &starts), 2 * FOOT_STEPS, control)?);
+    Ok(Cloud {
         weight: task.weight.iter().step_by(stride).copied().collect(),
         points,
         at,
-    }
+    })
 }
