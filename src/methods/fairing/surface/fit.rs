@@ -182,8 +182,7 @@ impl Fit {
     /// Springs to about `most` of the points, as stiff together as all.
     pub(in super::super) fn sampled(&self, points: &[Vector3<f64>], most: usize) -> Springs<3> {
         let stride = points.len().div_ceil(most).max(1);
-        let thin = |i: &usize| i % stride == 0;
-        let kept: Vec<usize> = (0..points.len()).filter(thin).collect();
+        let kept: Vec<usize> = (0..points.len()).step_by(stride).collect();
         Springs {
             at: kept.iter().map(|i| self.at[*i]).collect(),
             value: kept.iter().map(|i| points[*i].into()).collect(),

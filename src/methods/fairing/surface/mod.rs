@@ -23,6 +23,7 @@ pub(super) mod grid;
 pub(super) mod grid_fit;
 pub(super) mod input;
 mod interior_point;
+mod moments;
 pub(super) mod net;
 pub mod outcome;
 mod paper;
@@ -85,12 +86,18 @@ pub(super) fn conclude(
     (parametrisation, region): (Parametrisation, &Region),
     control: &dyn Control,
 ) -> Result<Outcome, FitError> {
-    control.progress("slips", 86.0);
-    let slips = slips::slips(task, fit, control)?;
+    control.progress("slips", 82.0);
+    let feet = report::feet_of(task, (&fit.sheet, &fit.at), control)?;
+    let slips = slips::slips(task, (fit, &feet), control)?;
+    let feet = match &bounded {
+        Some(b) => report::feet_of(task, (&b.sheet, &b.at), control)?,
+        None => feet,
+    };
     let found = report::Found {
         task,
         fit,
         bounded: bounded.as_ref(),
+        feet,
         parametrisation,
         region,
         slips,

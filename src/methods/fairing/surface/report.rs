@@ -37,6 +37,8 @@ pub(super) struct Found<'a> {
     pub(super) task: &'a Task,
     pub(super) fit: &'a Fit,
     pub(super) bounded: Option<&'a Bounded>,
+    /// Of the points on the delivered sheet.
+    pub(super) feet: Vec<Foot>,
     pub(super) parametrisation: Parametrisation,
     pub(super) region: &'a Region,
     pub(super) slips: Vec<Slip>,
@@ -49,12 +51,9 @@ pub(super) struct Found<'a> {
 /// finite.
 pub(super) fn outcome(found: Found, control: &dyn Control) -> Result<Outcome, FitError> {
     let (task, fit) = (found.task, found.fit);
-    let (sheet, at) = match found.bounded {
-        Some(b) => (&b.sheet, &b.at),
-        None => (&fit.sheet, &fit.at),
-    };
+    let sheet = found.bounded.map_or(&fit.sheet, |b| &b.sheet);
     control.progress("measuring", 88.0);
-    let moves = moves(task, (sheet, at), control)?;
+    let moves = moves(task, &found.feet);
     control.check()?;
     let normal = gather(&fit.sheet.net, &fit.sampled(&task.points, TRADE_SAMPLE));
     let before = before(task, fit, &normal).unwrap_or_else(|| fit.sheet.clone());
@@ -105,26 +104,32 @@ fn surface(task: &Task, sheet: &Sheet) -> Result<BSplineSurface, FitError> {
         .map_err(|e| FitError::Numerical(e.to_string()))
 }
 
-fn moves(
+/// Feet of the points on a sheet, or their own places where they keep their
+/// parameters.
+///
+/// # Errors
+/// [`FitError::Stopped`].
+pub(super) fn feet_of(
     task: &Task,
     (sheet, at): (&Sheet, &[[f64; 2]]),
     control: &dyn Control,
-) -> Result<Vec<Move>, FitError> {
-    let feet: Vec<Foot> = if task.slides() {
-        exact_feet(sheet, &task.points, at, control)?
-    } else {
-        let stay = |(p, at): (&nalgebra::Vector3<f64>, &[f64; 2])| {
-            let tangents = sheet.tangents(*at);
-            Foot {
-                at: *at,
-                sheet: tangents,
-                offset: p - tangents.point,
-            }
-        };
-        task.points.iter().zip(at).map(stay).collect()
+) -> Result<Vec<Foot>, FitError> {
+    if task.slides() {
+        return Ok(exact_feet(sheet, &task.points, at, control)?);
+    }
+    let stay = |(p, at): (&nalgebra::Vector3<f64>, &[f64; 2])| {
+        let tangents = sheet.tangents(*at);
+        Foot {
+            at: *at,
+            sheet: tangents,
+            offset: p - tangents.point,
+        }
     };
-    let moves = feet
-        .par_iter()
+    Ok(task.points.iter().zip(at).map(stay).collect())
+}
+
+fn moves(task: &Task, feet: &[Foot]) -> Vec<Move> {
+    feet.par_iter()
         .zip(&task.index)
         .with_min_len(512)
         .map(|(foot, index)| Move {
@@ -133,8 +138,7 @@ fn moves(
             at: foot.at,
             distance: foot.signed() * task.frame.size,
         })
-        .collect();
-    Ok(moves)
+        .collect()
 }
 
 fn before(task: &Task, fit: &Fit, normal: &Normal<3>) -> Option<Sheet> {

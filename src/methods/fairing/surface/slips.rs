@@ -6,8 +6,9 @@
 //! with leverage `h = bᵀM⁻¹b` and weight w the residual r becomes
 //! `r/(1 − wh)`, its variance `σ²(1 + h/(1 − wh))`.
 
+use super::feet::Foot;
 use super::fit::{Fit, free_only, median_scale, robust, springs_to};
-use super::net::Sheet;
+use super::net::{Sheet, Tangents};
 use super::outcome::Slip;
 use super::springs::{Normal, gather};
 use super::stiffness::{Factor, fit_with};
@@ -52,12 +53,16 @@ struct Judge<'a> {
     factor: Factor,
 }
 
-/// The suspected slips, worst first.
+/// The suspected slips, worst first; `feet`: of the points on the fit.
 ///
 /// # Errors
 /// [`FitError::Stopped`].
-pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec<Slip>, FitError> {
-    let Some(judge) = judge(task, fit, control)? else {
+pub(super) fn slips(
+    task: &Task,
+    (fit, feet): (&Fit, &[Foot]),
+    control: &dyn Control,
+) -> Result<Vec<Slip>, FitError> {
+    let Some(judge) = judge(task, (fit, feet), control)? else {
         return Ok(Vec::new());
     };
     control.check()?;
@@ -88,11 +93,12 @@ pub(super) fn slips(task: &Task, fit: &Fit, control: &dyn Control) -> Result<Vec
 /// no solution.
 fn judge<'a>(
     task: &'a Task,
-    fit: &'a Fit,
+    (fit, feet): (&'a Fit, &[Foot]),
     control: &dyn Control,
 ) -> Result<Option<Judge<'a>>, FitError> {
     let net = &fit.sheet.net;
-    let (mut springs, sheet, weight, lambda) = if task.points.len() > ROBUST_UP_TO || task.robust {
+    let bent = task.points.len() <= ROBUST_UP_TO && !task.robust;
+    let (mut springs, sheet, weight, lambda) = if !bent {
         let springs = fit.sampled(&task.points, ROBUST_UP_TO);
         (springs, fit.sheet.clone(), fit.weight.clone(), fit.lambda)
     } else {
@@ -105,13 +111,19 @@ fn judge<'a>(
         (springs, sheet, r.weight, r.chosen.lambda)
     };
     springs = free_only(&springs, task.freedom);
-    let residual: Vec<(f64, Vector3<f64>)> = task
-        .points
-        .par_iter()
-        .zip(&fit.at)
-        .with_min_len(512)
-        .map(|(p, at)| across(&sheet, p, *at, task.freedom))
-        .collect();
+    let residual: Vec<(f64, Vector3<f64>)> = if bent {
+        let places = task.points.par_iter().zip(&fit.at).with_min_len(512);
+        places
+            .map(|(p, at)| {
+                let tangents = sheet.tangents(*at);
+                across(&tangents, &(p - tangents.point), task.freedom)
+            })
+            .collect()
+    } else {
+        let feet = feet.par_iter().with_min_len(512);
+        feet.map(|f| across(&f.sheet, &f.offset, task.freedom))
+            .collect()
+    };
     let normal = gather(net, &springs);
     let Some(solved) = fit_with(&normal, &fit.energy, lambda, fit.model) else {
         return Ok(None);
@@ -190,19 +202,13 @@ fn slip(task: &Task, i: usize, (off, sigmas, confidence): (Vector3<f64>, f64, f6
 }
 
 /// Residual across the sheet (or along the one free axis), and its direction.
-fn across(
-    sheet: &Sheet,
-    p: &Vector3<f64>,
-    at: [f64; 2],
-    freedom: [bool; 3],
-) -> (f64, Vector3<f64>) {
-    let t = sheet.tangents(at);
+fn across(tangents: &Tangents, offset: &Vector3<f64>, freedom: [bool; 3]) -> (f64, Vector3<f64>) {
     let along = if freedom.iter().filter(|f| **f).count() == 1 {
         Vector3::from_fn(|k, _| if freedom[k] { 1.0 } else { 0.0 })
     } else {
-        t.normal().unwrap_or_else(Vector3::z)
+        tangents.normal().unwrap_or_else(Vector3::z)
     };
-    (along.dot(&(p - t.point)), along)
+    (along.dot(offset), along)
 }
 
 /// `bᵀM⁻¹b` at a place.

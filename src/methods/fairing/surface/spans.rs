@@ -92,6 +92,23 @@ impl Spans {
         }
     }
 
+    /// The span of a parameter (moved into the domain) and its place t in it.
+    #[inline]
+    pub(in super::super) fn local(&self, u: f64) -> (usize, f64) {
+        let u = u.clamp(self.domain[0], self.domain[1]);
+        let k = self.span(u);
+        (k, (u - self.spans[k].start) * self.spans[k].inverse)
+    }
+
+    /// First control value that acts in a span, and the coefficients of the
+    /// acting functions there, power by power.
+    pub(in super::super) fn polynomials(
+        &self,
+        span: usize,
+    ) -> (usize, &[[f64; MOST_ACTING]; MOST_ACTING]) {
+        (self.spans[span].first, &self.spans[span].power)
+    }
+
     /// Number of spans.
     pub(in super::super) fn len(&self) -> usize {
         self.spans.len()

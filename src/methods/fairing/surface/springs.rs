@@ -3,11 +3,12 @@
 //!
 //! Points are sorted into the cells of the net. Within a cell the outer
 //! product of a tensor row is the product of two small ones,
-//! `(bᵤbᵤᵀ) ⊗ (bᵥbᵥᵀ)`, so that a point costs T² multiply-adds with
-//! T = (p+1)(p+2)/2 (100 for bicubics), and cells are summed in parallel.
+//! `(bᵤbᵤᵀ) ⊗ (bᵥbᵥᵀ)`; cells with many points go through their moments
+//! (module `moments`). Cells are summed in parallel.
 //! The chunks are the same whatever the thread count, and are added in the
 //! same order.
 
+use super::moments::by_moments;
 use super::net::{MOST_ACTING, Net};
 use crate::numerics::EnvelopeMatrix;
 use rayon::prelude::*;
@@ -36,6 +37,10 @@ pub(in super::super) struct Normal<const D: usize> {
 
 /// Points of one chunk: enough to be worth a task, few enough to share.
 const CHUNK: usize = 4096;
+
+/// Points of a chunk from which moments are cheaper: turning them into
+/// products costs as much as some twenty points.
+const FULL: usize = 32;
 
 /// Points sorted by the cell of the net that they lie in.
 #[derive(Debug)]
@@ -85,13 +90,13 @@ impl Cells {
 }
 
 /// What one chunk adds.
-struct Block<const D: usize> {
-    first: [usize; 2],
+pub(super) struct Block<const D: usize> {
+    pub(super) first: [usize; 2],
     /// Products of u pairs times products of v pairs.
-    products: Vec<f64>,
-    rhs: [[f64; D]; MOST_ACTING * MOST_ACTING],
-    square: f64,
-    points: usize,
+    pub(super) products: Vec<f64>,
+    pub(super) rhs: [[f64; D]; MOST_ACTING * MOST_ACTING],
+    pub(super) square: f64,
+    pub(super) points: usize,
 }
 
 /// The normal equations of all springs.
@@ -105,10 +110,13 @@ pub(in super::super) fn gather_cells<const D: usize>(
     springs: &Springs<D>,
     cells: &Cells,
 ) -> Normal<D> {
-    let sum = |points: &[u32]| match net.degree() {
-        5 => block::<D, 6, 21>(net, springs, points),
-        4 => block::<D, 5, 15>(net, springs, points),
-        _ => block::<D, 4, 10>(net, springs, points),
+    let sum = |points: &[u32]| match (net.degree(), points.len() >= FULL) {
+        (5, false) => block::<D, 6, 21>(net, springs, points),
+        (5, true) => by_moments::<D, 6, 11, 21>(net, springs, points),
+        (4, false) => block::<D, 5, 15>(net, springs, points),
+        (4, true) => by_moments::<D, 5, 9, 15>(net, springs, points),
+        (_, false) => block::<D, 4, 10>(net, springs, points),
+        (_, true) => by_moments::<D, 4, 7, 10>(net, springs, points),
     };
     let blocks: Vec<Block<D>> = cells.chunks().map(sum).collect();
     let mut normal = Normal {
@@ -124,7 +132,7 @@ pub(in super::super) fn gather_cells<const D: usize>(
 }
 
 /// Sums one chunk: `N` acting functions in each direction, `T` pairs.
-fn block<const D: usize, const N: usize, const T: usize>(
+pub(super) fn block<const D: usize, const N: usize, const T: usize>(
     net: &Net,
     springs: &Springs<D>,
     points: &[u32],
