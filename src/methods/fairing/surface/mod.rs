@@ -27,6 +27,7 @@ mod moments;
 pub(super) mod net;
 pub mod outcome;
 mod paper;
+mod programme;
 pub(super) mod region;
 mod report;
 pub mod request;

@@ -1,7 +1,7 @@
 //! The fairest sheet within a hard tolerance of every point.
 //!
 //! At fixed feet the problem is a convex quadratic programme between strips
-//! ([`super::interior_point`]); control points move along the sheet's normals
+//! ([`super::programme`]); control points move along the sheet's normals
 //! or along the free axis. Feet and normals are then taken anew and the
 //! programme is solved again from there, a few times: each sheet stays within
 //! the strips, so that the energy settles. Where a strip was too wide, because
@@ -9,10 +9,8 @@
 //! exceeded.
 
 use super::feet::{Foot, feet};
-use super::interior_point::{self, Objective};
 use super::net::Sheet;
-use super::springs::Cells;
-use super::strips::Strips;
+use super::programme::Programme;
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
 use crate::solver::{Control, Stop};
@@ -29,7 +27,7 @@ pub(in super::super) struct Bounds<'a> {
 }
 
 impl Bounds<'_> {
-    fn freedom(&self) -> [bool; 3] {
+    pub(super) fn freedom(&self) -> [bool; 3] {
         self.axes.unwrap_or([true; 3])
     }
 }
@@ -69,6 +67,7 @@ pub(in super::super) fn within(
 ) -> Result<Bounded, FitError> {
     let mut sheet = start.0.clone();
     let mut at = start.1.to_vec();
+    let mut members = Vec::new();
     let mut narrow = vec![1.0 - ROOM; at.len()];
     let mut best: Option<(f64, Bounded)> = None;
     let mut before = f64::INFINITY;
@@ -77,9 +76,13 @@ pub(in super::super) fn within(
             "within tolerance",
             40.0 + 45.0 * round as f64 / ROUNDS as f64,
         );
-        let look = looks(&sheet, &at, bounds);
-        let Some((moved, duals)) = programme(&sheet, &look, (bounds, &narrow), (energy, control))?
-        else {
+        let programme = Programme {
+            bounds,
+            narrow: &narrow,
+            energy,
+        };
+        let solved = programme.solve((&sheet, &at), &mut members, control)?;
+        let Some((moved, duals)) = solved else {
             break;
         };
         sheet = moved;
@@ -163,135 +166,6 @@ pub(in super::super) fn energy_of(
             image.iter().zip(&c).map(|(a, b)| a * b).sum::<f64>()
         })
         .sum()
-}
-
-/// Where a point looks for the sheet, and what is left across that.
-struct Look {
-    at: [f64; 2],
-    direction: Vector3<f64>,
-    along: f64,
-    across: f64,
-}
-
-fn looks(sheet: &Sheet, at: &[[f64; 2]], bounds: Bounds) -> Vec<Look> {
-    let one = |(p, at): (&Vector3<f64>, &[f64; 2])| {
-        let tangents = sheet.tangents(*at);
-        let offset = p - tangents.point;
-        let direction = direction(tangents.normal(), bounds.axes);
-        let along = direction.dot(&offset);
-        Look {
-            at: *at,
-            direction,
-            along,
-            across: (offset.norm_squared() - along * along).max(0.0).sqrt(),
-        }
-    };
-    bounds.points.iter().zip(at).map(one).collect()
-}
-
-/// The normal, or its part along the free axes.
-fn direction(normal: Option<Vector3<f64>>, axes: Option<[bool; 3]>) -> Vector3<f64> {
-    let normal = normal.unwrap_or_else(Vector3::z);
-    let Some(free) = axes else {
-        return normal;
-    };
-    let keep = Vector3::from_fn(|k, _| if free[k] { normal[k] } else { 0.0 });
-    let axis = Vector3::from_fn(|k, _| if free[k] { 1.0 } else { 0.0 });
-    if free.iter().filter(|f| **f).count() == 1 {
-        return axis;
-    }
-    keep.try_normalize(1e-6).unwrap_or_else(|| axis.normalize())
-}
-
-/// Solves the programme at fixed feet; `None` where it has no solution.
-#[allow(clippy::type_complexity, reason = "sheet and duals, used once")]
-fn programme(
-    sheet: &Sheet,
-    looks: &[Look],
-    (bounds, narrow): (Bounds, &[f64]),
-    (energy, control): (&EnvelopeMatrix, &dyn Control),
-) -> Result<Option<(Sheet, Vec<f64>)>, FitError> {
-    let net = &sheet.net;
-    let directions = control_directions(sheet, bounds.axes);
-    let reach: Vec<f64> = looks
-        .iter()
-        .zip(bounds.tolerance.iter().zip(narrow))
-        .map(|(l, (e, n))| {
-            // What lies across cannot be changed; some room is left always.
-            let room = (e * n).powi(2) - l.across * l.across;
-            room.max((1e-2 * e).powi(2)).sqrt()
-        })
-        .collect();
-    let at: Vec<[f64; 2]> = looks.iter().map(|l| l.at).collect();
-    let strips = Strips {
-        net,
-        directions: &directions,
-        cells: Cells::new(net, &at),
-        at,
-        looks: looks
-            .iter()
-            .zip(&reach)
-            .map(|(l, e)| l.direction / *e)
-            .collect(),
-        offset: looks.iter().zip(&reach).map(|(l, e)| l.along / e).collect(),
-    };
-    let objective = objective(sheet, &directions, (energy, bounds.freedom()));
-    let optimum = interior_point::minimise(&objective, &strips, control)?;
-    if !optimum.met {
-        return Ok(None);
-    }
-    let mut moved = sheet.clone();
-    for (p, (n, c)) in moved
-        .control
-        .iter_mut()
-        .zip(directions.iter().zip(&optimum.moves))
-    {
-        *p += n * *c;
-    }
-    let duals = optimum
-        .duals
-        .iter()
-        .zip(&reach)
-        .map(|(z, e)| z / e)
-        .collect();
-    Ok(Some((moved, duals)))
-}
-
-/// The direction of each control point: that of the sheet beneath it.
-fn control_directions(sheet: &Sheet, axes: Option<[bool; 3]>) -> Vec<Vector3<f64>> {
-    let [nu, nv] = sheet.net.counts();
-    let mut directions = vec![Vector3::zeros(); nu * nv];
-    for i in 0..nu {
-        for j in 0..nv {
-            let at = [
-                sheet.net.knots[0].greville(i),
-                sheet.net.knots[1].greville(j),
-            ];
-            directions[sheet.net.index(i, j)] = direction(sheet.tangents(at).normal(), axes);
-        }
-    }
-    directions
-}
-
-/// The energy as a function of the moves, scaled so that the present energy
-/// is 1.
-fn objective(
-    sheet: &Sheet,
-    directions: &[Vector3<f64>],
-    (energy, freedom): (&EnvelopeMatrix, [bool; 3]),
-) -> Objective {
-    let diagonal = energy.diagonal().fold(0.0, f64::max);
-    let scale = 1.0 / energy_of(sheet, energy, freedom).max(1e-16 * diagonal + f64::MIN_POSITIVE);
-    let mut hessian = energy.clone();
-    hessian.scale_entries(|i, j, v| v * scale * directions[i].dot(&directions[j]));
-    let mut gradient = vec![0.0; directions.len()];
-    for d in (0..3).filter(|d| freedom[*d]) {
-        let c: Vec<f64> = sheet.control.iter().map(|p| p[d]).collect();
-        for ((g, p), n) in gradient.iter_mut().zip(energy.multiply(&c)).zip(directions) {
-            *g += scale * p * n[d];
-        }
-    }
-    Objective { hessian, gradient }
 }
 
 /// Feet of all points, as exact as tolerances need.
