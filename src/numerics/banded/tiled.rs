@@ -233,7 +233,7 @@ mod tests {
             for j in i.saturating_sub(w)..i {
                 matrix.add(i, j, ((i * 7 + j * 13) % 17) as f64 / 17.0 - 0.4);
             }
-            matrix.add(i, i, w as f64);
+            matrix.add(i, i, 2.0 * w as f64 + 1.0);
         }
         matrix
     }

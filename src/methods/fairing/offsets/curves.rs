@@ -160,10 +160,10 @@ fn pieces(faired: &Faired, y: f64) -> Result<Vec<BSplineCurve>, FitError> {
         let (k, part) = (i / BETWEEN, i % BETWEEN);
         let next = (k + 1).min(stations.len() - 1);
         let u = stations[k] + (stations[next] - stations[k]) * part as f64 / BETWEEN as f64;
-        // Between stations, only where both are on the hull.
+        // Between stations, where either is on the hull.
         let on = |j: usize| {
             faired.kinds[k][j] != CellKind::Outside
-                && (part == 0 || faired.kinds[next][j] != CellKind::Outside)
+                || (part > 0 && faired.kinds[next][j] != CellKind::Outside)
         };
         let found = widening(faired, (u, y), &on);
         match (found, runs.last_mut()) {
@@ -188,7 +188,8 @@ fn widening(
     let lines = &faired.at[1];
     let wide = |v: f64| surface.point(u, v).y >= y;
     for j in 0..lines.len() - 1 {
-        if !(on(j) && on(j + 1)) {
+        // The hull may end between two waterlines.
+        if !(on(j) || on(j + 1)) {
             continue;
         }
         let step = (lines[j + 1] - lines[j]) / DOWN as f64;
