@@ -3,7 +3,7 @@
 //! tolerances would give.
 
 use super::energy::Energy;
-use super::free::{HELD, Shape, soft_shape};
+use super::free::{FIRST_ENERGY, HELD, Shape, soft_shape};
 use super::net::{MOST_SPANS, split, transfer};
 use super::solve::{Bench, Free, Solved};
 use super::space::Vector;
@@ -61,8 +61,20 @@ impl<const D: usize> Bench<'_, D> {
         const MOST_SPLITS: usize = 10;
         let limits = limits(&solved.tolerances);
         let mut used = self.approach(&mut fit, &limits)?;
-        if used >= 1.0 && fit.net != "asked" {
-            let mut near = self.rough(&fit)?;
+        // Ever more spans at the feet of the fit, in the end at the places that
+        // the points have by themselves.
+        let first = fit.shape.space.spans().len();
+        let most = self.most_spans().max(first);
+        let doubled = std::iter::successors(Some(2 * first), |n| (*n < most).then_some(2 * n));
+        let own = self.traced.parameters.clone();
+        let tries = doubled
+            .map(|n| (n.min(most), fit.springs.feet.clone()))
+            .chain([(most, own)]);
+        for (spans, feet) in tries.collect::<Vec<_>>() {
+            if used < 1.0 || fit.net == "asked" {
+                break;
+            }
+            let mut near = self.rough(&fit, spans, feet)?;
             let other = self.approach(&mut near, &limits)?;
             if other < used {
                 (fit, used) = (near, other);
@@ -97,14 +109,13 @@ impl<const D: usize> Bench<'_, D> {
 
     /// The other end from which to enter the bounds: the curve of ∫ |r‴|² du
     /// nearly through the points, instead of the stiffest they allow.
-    fn rough(&self, fit: &Free<D>) -> Result<Free<D>, FitError> {
-        let spans = self.most_spans().max(fit.shape.space.spans().len());
+    fn rough(&self, fit: &Free<D>, spans: usize, feet: Vec<f64>) -> Result<Free<D>, FitError> {
         let t = self.traced;
         let data = (&t.parameters[..], t.domain, t.closed);
         let space = space_for(self.degree(), data, spans.min(MOST_SPANS), &self.breaks())
             .map_err(|e| FitError::Numerical(e.to_string()))?;
         let mut springs = fit.springs.clone();
-        springs.feet.clone_from(&t.parameters);
+        springs.feet = feet;
         let broken = || FitError::Numerical("the points do not determine a curve".into());
         let shape = soft_shape(space, &springs, self.quadratic).ok_or_else(broken)?;
         let mut holds = self.holds(&shape, &springs.held);
@@ -158,6 +169,11 @@ impl<const D: usize> Bench<'_, D> {
         fit.holds
             .weigh(&fit.shape.space, 1.0, &offsets.stiffnesses());
         let lazy = self.lazy(fit, tolerances);
+        // The way in is convex with the quadratic energy; ∫ κ′² would lead
+        // into cusps, which are as good a way in as any to it.
+        let own = fit.shape.energy.quadratic;
+        fit.shape.energy.quadratic = own.or(Some(FIRST_ENERGY));
+        let mut entered_at = Ok(0.0);
         for price in PRICES {
             let bounds = Bounds {
                 tolerance: tolerances,
@@ -165,12 +181,15 @@ impl<const D: usize> Bench<'_, D> {
             };
             let terms = fit.terms(bounds);
             let (mut x, mut springs) = (fit.shape.x.clone(), fit.springs.clone());
-            let entered = enter(&terms, &mut springs, &mut x, price, self.control)?;
+            let entered = enter(&terms, &mut springs, &mut x, price, self.control);
             (fit.shape.x, fit.springs) = (x, springs);
-            if entered.slack < 0.0 {
+            entered_at = entered.map(|e| e.slack);
+            if !matches!(entered_at, Ok(slack) if slack >= 0.0) {
                 break;
             }
         }
+        fit.shape.energy.quadratic = own;
+        entered_at?;
         Ok(worst(&fit.shape, &fit.springs, tolerances))
     }
 
@@ -191,6 +210,21 @@ impl<const D: usize> Bench<'_, D> {
                 others: &lazy,
             };
             let (mut x, mut springs) = (fit.shape.x.clone(), fit.springs.clone());
+            let far = fit.net == "the tolerance" && fit.shape.energy.quadratic.is_none();
+            if result.is_none() && far {
+                // Downhill from far on the convex side first: ∫ κ′² has cusps
+                // to fall into.
+                let mut convex = fit.shape.energy.clone();
+                convex.quadratic = Some(FIRST_ENERGY);
+                let terms = Terms {
+                    energy: &convex,
+                    ..fit.terms(Bounds {
+                        tolerance: tolerances,
+                        others: &lazy,
+                    })
+                };
+                fairest(&terms, &mut springs, &mut x, self.control)?;
+            }
             let walked = fairest(&fit.terms(bounds), &mut springs, &mut x, self.control)?;
             (fit.shape.x, fit.springs) = (x, springs);
             result = Some(walked);

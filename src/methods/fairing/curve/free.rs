@@ -37,7 +37,7 @@ const SETTLED: f64 = 0.05;
 
 /// Energy of the first shape: jerk, and so little of the others that they
 /// matter only where two or three points leave the curve undetermined.
-const FIRST_ENERGY: Quadratic = [1e-12, 1e-9, 1.0];
+pub(super) const FIRST_ENERGY: Quadratic = [1e-12, 1e-9, 1.0];
 
 /// The curve of the quadratic energy ∫ |r‴|² du at the stiffness that the
 /// points suggest, with their feet where they are.

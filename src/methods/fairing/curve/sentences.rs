@@ -29,6 +29,7 @@ pub(super) fn summary(request: &Request, o: &Outcome) -> Vec<String> {
             )
         });
     }
+    all.extend(doubts(o));
     all.push(format!(
         "Degree {}, {} control points ({}).",
         o.report.degree, o.report.control_points, o.report.control_points_from
@@ -57,6 +58,34 @@ pub(super) fn summary(request: &Request, o: &Outcome) -> Vec<String> {
         ));
     }
     all
+}
+
+/// Gap above which a curve is not said to be the fairest.
+const DOUBTFUL_GAP: f64 = 0.01;
+/// Tolerances below so many deviations leave no room for a fair curve: of a
+/// few hundred points several are farther off.
+const TIGHT: f64 = 2.5;
+
+/// What an outcome within its tolerances still lacks.
+fn doubts(o: &Outcome) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let tightest = o.moves.iter().filter_map(|m| m.tolerance);
+    let tightest = tightest.filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min);
+    if o.report.noise_evident && tightest < TIGHT * o.report.noise {
+        doubts.push(format!(
+            "A tolerance of {} is less than {TIGHT} times the scatter of the points: the curve \
+             has to follow their errors and is rougher for it.",
+            short(tightest)
+        ));
+    }
+    if let Some(gap) = o.report.gap.filter(|g| *g > DOUBTFUL_GAP) {
+        doubts.push(format!(
+            "There may be a fairer curve within the tolerances: the search ended with a gap of \
+             {:.0} %.",
+            100.0 * gap
+        ));
+    }
+    doubts
 }
 
 fn verdict(request: &Request, o: &Outcome) -> String {

@@ -7,9 +7,9 @@ mod noise;
 mod slips;
 mod unordered;
 
+use super::fit;
 use super::outcome::Outcome;
 use super::request::Request;
-use super::{fit, outcome};
 use crate::solver::Unwatched;
 use nalgebra::Point3;
 
@@ -92,7 +92,7 @@ pub(super) fn fitted(request: &Request) -> Outcome {
     fit(request, &Unwatched).expect("the request is sound")
 }
 
-pub(super) fn curvature_range(o: &outcome::Outcome) -> (f64, f64) {
+pub(super) fn curvature_range(o: &Outcome) -> (f64, f64) {
     let all = o.comb.iter().map(|t| t.curvature);
     all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), k| {
         (a.min(k), b.max(k))

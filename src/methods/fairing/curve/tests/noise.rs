@@ -142,3 +142,25 @@ fn helices_have_curvature_and_torsion() {
         assert!((t.torsion - 0.4).abs() < 5e-3, "τ {}", t.torsion);
     }
 }
+
+/// Tolerances from many deviations down to two: the tighter, the
+/// rougher, and never a cusp (which made ∫ κ′² 1e10 before the way into the
+/// bounds was a convex one).
+#[test]
+fn tight_tolerances_cost_fairness_by_degrees() {
+    const SIGMA: f64 = 0.005;
+    let points = frame(200, SIGMA, 11);
+    let mut before = 0.0;
+    for deviations in [4.0, 3.0, 2.5, 2.0] {
+        let mut request = Request::through(points.clone(), 2);
+        request.options.tolerance = Some(deviations * SIGMA);
+        let outcome = fitted(&request);
+        assert!(outcome.within_limits, "{deviations}: {:?}", outcome.summary);
+        let rough = outcome.after.curvature_variation;
+        assert!(
+            rough >= before * 0.99 && rough < 1e3,
+            "{deviations} deviations: {rough} after {before}"
+        );
+        before = rough;
+    }
+}
