@@ -8,7 +8,7 @@
 use super::plates::{HullDrawing, RulingLine};
 
 /// RFC 4180 §2: records end in CR LF.
-const END_OF_RECORD: &str = "\r\n";
+pub(super) const END_OF_RECORD: &str = "\r\n";
 
 /// One record a ruling below one header record that carries the units; plates
 /// and rulings in the order of the drawing, rulings counted from 1.
@@ -73,7 +73,7 @@ fn record(plate: &str, number: usize, ruling: &RulingLine) -> String {
 }
 
 /// Shortest text that reads back as the same number; empty when there is none.
-fn number_field(number: f64) -> String {
+pub(super) fn number_field(number: f64) -> String {
     if number.is_finite() {
         format!("{number}")
     } else {
@@ -82,7 +82,7 @@ fn number_field(number: f64) -> String {
 }
 
 /// Quotes a text where the format demands it (RFC 4180 §2.5–2.7).
-fn field(text: &str) -> String {
+pub(super) fn field(text: &str) -> String {
     if text.contains(['"', ',', '\r', '\n']) {
         format!("\"{}\"", text.replace('"', "\"\""))
     } else {
@@ -91,7 +91,7 @@ fn field(text: &str) -> String {
 }
 
 /// Keeps a spreadsheet from taking a user's name for a formula.
-fn harmless(text: &str) -> String {
+pub(super) fn harmless(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         format!("'{text}")
     } else {

@@ -11,6 +11,8 @@
 //! | [`svg`] | the lines plan with the rulings coloured by twist | print, README, browser |
 
 pub mod csv;
+pub mod fair_curve;
+pub mod fair_points;
 pub mod obj;
 pub mod plates;
 pub mod points_in;

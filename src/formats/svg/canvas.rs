@@ -74,6 +74,25 @@ impl Canvas {
         self.path(&data, stroke);
     }
 
+    /// Areas with one fill; where rings lie in one another, every second one is
+    /// a hole.
+    pub fn areas(&mut self, rings: &[Vec<Spot>], fill: &str) {
+        let data: String = rings.iter().map(|ring| closed(ring)).collect();
+        if !data.is_empty() {
+            self.push(format_args!(
+                "<path d=\"{data}\" fill=\"{fill}\" fill-rule=\"evenodd\"/>\n"
+            ));
+        }
+    }
+
+    /// As [`Canvas::polyline`], dashed.
+    pub fn dashed(&mut self, points: &[Spot], stroke: Stroke<'_>) {
+        const DASH: &str = "1.6 1.1";
+        self.push(format_args!("<g stroke-dasharray=\"{DASH}\">\n"));
+        self.polyline(points, stroke);
+        self.push(format_args!("</g>\n"));
+    }
+
     fn path(&mut self, data: &str, stroke: Stroke<'_>) {
         self.push(format_args!(
             "<path d=\"{data}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\"/>\n",
@@ -145,6 +164,23 @@ impl Canvas {
         // Writing to a `String` cannot fail.
         let _ = self.body.write_fmt(what);
     }
+}
+
+/// A ring as path data; nothing where it has no area.
+fn closed(ring: &[Spot]) -> String {
+    let [first, rest @ ..] = ring else {
+        return String::new();
+    };
+    if rest.len() < 2 {
+        return String::new();
+    }
+    let mut data = format!("M{}", spot(*first));
+    for point in rest {
+        data.push('L');
+        data.push_str(&spot(*point));
+    }
+    data.push('Z');
+    data
 }
 
 /// "x y" in the shortest form a path understands.

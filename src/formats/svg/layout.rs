@@ -3,6 +3,7 @@
 //! body side by side, as on a drawing board.
 
 use super::canvas::Spot;
+use super::panel::Panel;
 use nalgebra::Point3;
 
 /// Page width: A4 on its side, mm. The height follows from the contents.
@@ -56,6 +57,16 @@ impl View {
     /// Upper end of it.
     pub fn high(&self, axis: usize) -> f64 {
         self.low(axis) + self.size[axis] / self.scale
+    }
+
+    /// The same place and scales as a panel.
+    pub fn panel(&self) -> Panel {
+        Panel {
+            corner: self.corner,
+            size: self.size,
+            low: [self.low(0), self.low(1)],
+            scale: [self.scale; 2],
+        }
     }
 
     /// The y coordinate of its lower edge, mm.

@@ -26,7 +26,7 @@ const TYPE: f64 = 3.0;
 pub(super) fn draw(canvas: &mut Canvas, hull: &HullDrawing, top: f64, scale: f64) -> f64 {
     let bar = colour_bar(canvas, hull.twist_limit_deg, top);
     let list = plate_list(canvas, hull, top);
-    scale_bar(canvas, &hull.units, top, scale);
+    scale_bar(canvas, &hull.units, [top, scale], "all views to one scale");
     bar.max(list)
 }
 
@@ -132,8 +132,9 @@ fn plate_list(canvas: &mut Canvas, hull: &HullDrawing, top: f64) -> f64 {
     y
 }
 
-/// A bar of a round length, at the right.
-fn scale_bar(canvas: &mut Canvas, units: &str, top: f64, scale: f64) {
+/// A bar of a round length at the right, with its top at the first number (mm)
+/// and to the scale of the second (mm per unit of length), and a remark below.
+pub(super) fn scale_bar(canvas: &mut Canvas, units: &str, [top, scale]: [f64; 2], remark: &str) {
     /// About how long the bar should be, mm.
     const LENGTH: f64 = 30.0;
     let step = round_step(LENGTH / scale);
@@ -155,7 +156,7 @@ fn scale_bar(canvas: &mut Canvas, units: &str, top: f64, scale: f64) {
         size: 2.5,
         ..style(Anchor::End, false)
     };
-    canvas.text([right, y + 5.0], note, "all views to one scale");
+    canvas.text([right, y + 5.0], note, remark);
 }
 
 /// An angle with as many digits as are worth reading.

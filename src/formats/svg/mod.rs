@@ -11,29 +11,32 @@
 
 mod canvas;
 mod colour;
+pub(super) mod fair_curve;
+mod key;
 mod layout;
 mod legend;
+mod moves;
+mod page;
+mod panel;
 mod text;
 mod views;
 
 use super::plates::{HullDrawing, bounds};
-use canvas::{Anchor, Canvas, Stroke, TextStyle};
-use layout::{MARGIN, PAGE_WIDTH};
-use views::{GREY, INK};
-
-/// Height of the title's type, mm.
-const TITLE_TYPE: f64 = 6.0;
-/// Height of the sentences' type, mm.
-const SENTENCE_TYPE: f64 = 3.2;
-/// Distance of the sentences' base lines, mm.
-const SENTENCE_LINE: f64 = 4.8;
-/// Sentences beyond this number of lines are cut: a page, not a book.
-const MOST_LINES: usize = 60;
+use canvas::Canvas;
+use layout::PAGE_WIDTH;
+use page::Words;
 
 /// The whole page.
 pub fn lines_plan(hull: &HullDrawing) -> String {
     let mut canvas = Canvas::default();
-    let mut y = heading(&mut canvas, hull);
+    let words = Words {
+        title: &hull.title,
+        units: &hull.units,
+        verdict: &hull.verdict,
+        good: hull.plates.iter().all(|p| p.within_limits),
+        summary: &hull.summary,
+    };
+    let mut y = page::heading(&mut canvas, &words);
     if let Some(corners) = bounds(hull) {
         let layout = layout::arrange(corners, y + 9.0);
         for view in &layout.views {
@@ -46,75 +49,8 @@ pub fn lines_plan(hull: &HullDrawing) -> String {
             .fold(y, f64::max);
         y = legend::draw(&mut canvas, hull, bottom + 13.0, layout.views[0].scale);
     }
-    y = sentences(&mut canvas, &hull.summary, y + 7.0);
-    canvas.finish(
-        [PAGE_WIDTH, (y + MARGIN - SENTENCE_LINE).ceil()],
-        &hull.title,
-    )
-}
-
-/// Title and verdict; returns the last base line, mm.
-fn heading(canvas: &mut Canvas, hull: &HullDrawing) -> f64 {
-    let room = PAGE_WIDTH - 2.0 * MARGIN;
-    let mut y = MARGIN + TITLE_TYPE - 1.5;
-    let style = TextStyle {
-        size: TITLE_TYPE,
-        colour: INK,
-        anchor: Anchor::Start,
-        bold: true,
-    };
-    // Bold type runs a tenth wider than the estimate.
-    canvas.text(
-        [MARGIN, y],
-        style,
-        &text::clip(&hull.title, TITLE_TYPE, room * 0.9),
-    );
-    y += 6.5;
-    let good = hull.plates.iter().all(|p| p.within_limits);
-    let colour = if good { "#1a7f4b" } else { colour::ABOVE_LIMIT };
-    canvas.circle(
-        [MARGIN + 1.4, y - 1.25],
-        1.4,
-        colour,
-        Stroke { colour, width: 0.1 },
-    );
-    let verdict = format!(
-        "{} · lengths in {}",
-        hull.verdict.replace('_', " "),
-        hull.units
-    );
-    let style = TextStyle {
-        size: 3.6,
-        colour: GREY,
-        anchor: Anchor::Start,
-        bold: false,
-    };
-    canvas.text(
-        [MARGIN + 4.4, y],
-        style,
-        &text::clip(&verdict, 3.6, room - 4.4),
-    );
-    y
-}
-
-/// The sentences, wrapped; returns the base line after the last, mm.
-fn sentences(canvas: &mut Canvas, summary: &[String], top: f64) -> f64 {
-    let style = TextStyle {
-        size: SENTENCE_TYPE,
-        colour: INK,
-        anchor: Anchor::Start,
-        bold: false,
-    };
-    let room = PAGE_WIDTH - 2.0 * MARGIN;
-    let lines = summary
-        .iter()
-        .flat_map(|s| text::wrap(s, SENTENCE_TYPE, room));
-    let mut y = top;
-    for line in lines.take(MOST_LINES) {
-        canvas.text([MARGIN, y], style, &line);
-        y += SENTENCE_LINE;
-    }
-    y
+    y = page::sentences(&mut canvas, &words, y + 7.0);
+    canvas.finish([PAGE_WIDTH, page::height(y)], &hull.title)
 }
 
 #[cfg(test)]

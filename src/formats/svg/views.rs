@@ -2,7 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, Spot, Stroke, TextStyle};
 use super::colour;
-use super::layout::{Layout, View, grid_label, multiples};
+use super::layout::{Layout, View};
 use crate::formats::plates::{HullDrawing, PlateDrawing, RulingLine, is_finite};
 
 /// Rulings of nearly one colour go into one path; this many colours below the
@@ -24,10 +24,6 @@ pub(super) const MARK_RADIUS: f64 = 1.9;
 pub(super) const INK: &str = "#111111";
 /// Lesser text.
 pub(super) const GREY: &str = "#555555";
-/// Grid lines.
-const GRID_COLOUR: &str = "#d9dde2";
-/// Height of grid numbers, mm.
-const GRID_TEXT: f64 = 2.5;
 
 /// Draws one view of the hull.
 pub(super) fn draw(canvas: &mut Canvas, hull: &HullDrawing, layout: &Layout, view: &View) {
@@ -105,31 +101,8 @@ pub(super) fn mark(canvas: &mut Canvas, at: Spot, number: usize) {
 }
 
 fn draw_grid(canvas: &mut Canvas, step: f64, view: &View) {
+    view.panel().grid(canvas, [step; 2]);
     let [left, top] = view.corner;
-    let [right, bottom] = [left + view.size[0], view.bottom()];
-    let stroke = Stroke {
-        colour: GRID_COLOUR,
-        width: 0.15,
-    };
-    let mut style = TextStyle {
-        size: GRID_TEXT,
-        colour: GREY,
-        anchor: Anchor::Middle,
-        bold: false,
-    };
-    let mut lines = Vec::new();
-    for value in multiples(step, view.low(0), view.high(0)) {
-        let x = left + (value - view.low(0)) * view.scale;
-        lines.push([[x, top], [x, bottom]]);
-        canvas.text([x, bottom + 3.4], style, &grid_label(value, step));
-    }
-    style.anchor = Anchor::End;
-    for value in multiples(step, view.low(1), view.high(1)) {
-        let y = bottom - (value - view.low(1)) * view.scale;
-        lines.push([[left, y], [right, y]]);
-        canvas.text([left - 1.5, y + 0.9], style, &grid_label(value, step));
-    }
-    canvas.strokes(&lines, stroke);
     let axes = view.axes.map(|i| ["x", "y", "z"][i]);
     let style = TextStyle {
         size: 3.0,
