@@ -13,6 +13,7 @@
 pub mod csv;
 pub mod fair_curve;
 pub mod fair_points;
+pub mod fair_surface;
 pub mod obj;
 pub mod plates;
 pub mod points_in;

@@ -38,12 +38,12 @@ pub fn write(hull: &HullDrawing) -> String {
 }
 
 /// Appends formatted text; writing to a `String` cannot fail.
-fn push(text: &mut String, what: std::fmt::Arguments<'_>) {
+pub(super) fn push(text: &mut String, what: std::fmt::Arguments<'_>) {
     let _ = text.write_fmt(what);
 }
 
 /// A comment must stay on its line.
-fn one_line(text: &str) -> String {
+pub(super) fn one_line(text: &str) -> String {
     text.chars()
         .map(|c| if c.is_control() { ' ' } else { c })
         .collect()

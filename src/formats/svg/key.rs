@@ -20,8 +20,6 @@ const COLUMN: f64 = 112.0;
 pub(super) enum Sample {
     /// A full line.
     Line(Stroke<'static>),
-    /// A dashed line.
-    Dashed(Stroke<'static>),
     /// A small disc with a border.
     Disc(&'static str, Stroke<'static>),
     /// A cross.
@@ -58,7 +56,6 @@ fn draw_sample(canvas: &mut Canvas, sample: Sample, [x, y]: Spot) {
     let middle = [x + SAMPLE / 2.0, y];
     match sample {
         Sample::Line(stroke) => canvas.polyline(&ends, stroke),
-        Sample::Dashed(stroke) => canvas.dashed(&ends, stroke),
         Sample::Disc(fill, stroke) => canvas.circle(middle, 0.9, fill, stroke),
         Sample::Cross(stroke) => cross(canvas, middle, stroke),
         Sample::Field(fill) => canvas.rectangle([x, y - 1.4], [SAMPLE, 2.8], fill),

@@ -54,11 +54,6 @@ impl View {
         self.low[self.axes[axis]]
     }
 
-    /// Upper end of it.
-    pub fn high(&self, axis: usize) -> f64 {
-        self.low(axis) + self.size[axis] / self.scale
-    }
-
     /// The same place and scales as a panel.
     pub fn panel(&self) -> Panel {
         Panel {

@@ -12,6 +12,7 @@
 mod canvas;
 mod colour;
 pub(super) mod fair_curve;
+pub(super) mod fair_surface;
 mod key;
 mod layout;
 mod legend;

@@ -70,6 +70,12 @@ impl Panel {
         self.corner[0] + self.size[0]
     }
 
+    /// Whether a place on the page lies in the panel.
+    pub fn holds(&self, spot: Spot) -> bool {
+        let within = |i: usize| (self.corner[i]..=self.corner[i] + self.size[i]).contains(&spot[i]);
+        within(0) && within(1)
+    }
+
     /// Lines at multiples of the steps, with their numbers.
     pub fn grid(&self, canvas: &mut Canvas, steps: [f64; 2]) {
         let [left, top] = self.corner;
