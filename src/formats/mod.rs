@@ -15,6 +15,7 @@ pub mod fair_curve;
 pub mod fair_points;
 pub mod fair_surface;
 pub mod obj;
+pub mod offsets;
 pub mod plates;
 pub mod points_in;
 mod strip;

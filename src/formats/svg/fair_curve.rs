@@ -10,10 +10,9 @@ mod view;
 use super::canvas::Canvas;
 use super::layout::{MARGIN, PAGE_WIDTH};
 use super::page::{self, Words};
+use super::sample::samples;
 use super::{key, legend};
 use crate::formats::fair_curve::FairCurveDrawing;
-use crate::geometry::BSplineCurve;
-use nalgebra::Point3;
 use view::View;
 
 /// Colour of the fair curve.
@@ -65,28 +64,6 @@ fn panel_left() -> f64 {
 /// Width of every panel, mm.
 fn panel_width() -> f64 {
     PAGE_WIDTH - MARGIN - panel_left()
-}
-
-/// Points along a curve, closely enough that their polygon looks like it, each
-/// with its parameter.
-fn samples(curve: &BSplineCurve) -> Vec<(f64, Point3<f64>)> {
-    /// Samples in a polynomial piece, unless there are very many pieces.
-    const IN_A_PIECE: usize = 16;
-    /// Samples in all: five on every millimetre of the page.
-    const MOST: usize = 1400;
-    let breakpoints = curve.knot_vector().breakpoints();
-    let pieces = breakpoints.len().saturating_sub(1).max(1);
-    let each = (MOST / pieces).clamp(1, IN_A_PIECE);
-    let mut parameters = Vec::with_capacity(pieces * each + 1);
-    for pair in breakpoints.windows(2) {
-        let at = |i: usize| pair[0] + (pair[1] - pair[0]) * (i as f64 / each as f64);
-        parameters.extend((0..each).map(at));
-    }
-    parameters.extend(breakpoints.last());
-    parameters
-        .into_iter()
-        .map(|u| (u, curve.point(u)))
-        .collect()
 }
 
 #[cfg(test)]

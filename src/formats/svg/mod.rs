@@ -17,8 +17,10 @@ mod key;
 mod layout;
 mod legend;
 mod moves;
+pub(super) mod offsets;
 mod page;
 mod panel;
+mod sample;
 mod text;
 mod views;
 

@@ -1,7 +1,7 @@
 use super::*;
 use crate::formats::fair_curve::{FairPoint, Tooth};
-use crate::geometry::{Parametrization, interpolate};
-use nalgebra::Vector3;
+use crate::geometry::{BSplineCurve, Parametrization, interpolate};
+use nalgebra::{Point3, Vector3};
 
 /// A wavy arc with its comb by differences of the evaluated curve.
 fn drawing(dimension: usize) -> FairCurveDrawing {
