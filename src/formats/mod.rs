@@ -1,4 +1,4 @@
-//! Bytes ↔ geometry: what leaves the loft as a file.
+//! Bytes ↔ geometry: what enters and leaves the loft as a file.
 //!
 //! A writer is a pure function from a drawing (plain geometry, already
 //! sampled) to text: the same drawing gives the same bytes. The writers know
@@ -9,6 +9,13 @@
 //! | [`obj`] | triangles, watertight along shared chines | viewers, meshers, CAD |
 //! | [`csv`] | one row a ruling | spreadsheets, marking-off |
 //! | [`svg`] | the lines plan with the rulings coloured by twist | print, README, browser |
+//! | [`fair_curve`] | corrections of a faired curve (CSV), its plot (SVG) | loftsmen, print |
+//! | [`fair_surface`] | a trimmed mesh (OBJ), corrections (CSV), isophotes (SVG) | CAD, loftsmen, print |
+//! | [`offsets`] | a faired table of offsets (CSV), its lines plan (SVG) | loftsmen, print |
+//!
+//! One module reads: [`points_in`], lists of points and tables of offsets as
+//! yards write them. It tells how it read a file and guesses nothing that
+//! changes a number.
 
 pub mod csv;
 pub mod fair_curve;

@@ -145,8 +145,10 @@ pub(super) fn begins_like_a_number(text: &str) -> bool {
 fn reason(text: &str) -> Fault {
     const FRACTIONS: [char; 7] = ['½', '¼', '¾', '⅛', '⅜', '⅝', '⅞'];
     let unsigned = text.trim_start_matches(['+', '-', '\u{2212}']);
-    let infinite = |word: &&str| unsigned.eq_ignore_ascii_case(word);
-    if ["inf", "infinity", "∞"].iter().any(|w| infinite(&w)) {
+    if ["inf", "infinity", "∞"]
+        .iter()
+        .any(|word| unsigned.eq_ignore_ascii_case(word))
+    {
         return Fault::NotFinite;
     }
     let has_digit = text.contains(|c: char| c.is_ascii_digit());

@@ -20,6 +20,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 pub(super) struct Chart<'a> {
     surface: &'a BSplineSurface,
     plane: Plane,
+    /// Places all over the surface, where the search for a foot begins.
+    known: Vec<([f64; 2], Point3<f64>)>,
     /// Least and greatest of both coordinates within the outline.
     pub ranges: [[f64; 2]; 2],
 }
@@ -46,10 +48,15 @@ impl<'a> Chart<'a> {
         let mut chart = Chart {
             surface,
             plane: Plane::Parameters(sizes(surface)),
+            known: Vec::new(),
             ranges: [[0.0, 1.0]; 2],
         };
-        if let Some(plane) = best_plane(surface, &probes) {
-            chart.plane = plane;
+        match best_plane(surface, &probes) {
+            Some(plane) => chart.plane = plane,
+            None => {
+                let known = |p: [f64; 2]| (p, surface.point(p[0], p[1]));
+                chart.known = self::probes(surface).into_iter().map(known).collect();
+            }
         }
         let corners = outline.rings.iter().flat_map(|ring| chart.dense(ring));
         let places: Vec<[f64; 2]> = corners.chain(probes).map(|p| chart.place(p)).collect();
@@ -84,8 +91,46 @@ impl<'a> Chart<'a> {
     pub fn place_in_space(&self, point: &Point3<f64>) -> [f64; 2] {
         match &self.plane {
             Plane::Seen { right, up } => [point.coords.dot(right), point.coords.dot(up)],
-            Plane::Parameters(_) => self.place(foot(self.surface, point)),
+            Plane::Parameters(_) => self.place(self.foot(point)),
         }
+    }
+
+    /// The parameters of the place of the surface nearest to a point: the nearest
+    /// probe, then Gauss–Newton.
+    fn foot(&self, point: &Point3<f64>) -> [f64; 2] {
+        const STEPS: usize = 6;
+        let surface = self.surface;
+        let distance = |p: &[f64; 2]| (surface.point(p[0], p[1]) - point).norm_squared();
+        let squared = |(_, p): &&([f64; 2], Point3<f64>)| (p - point).norm_squared();
+        let near = self
+            .known
+            .iter()
+            .min_by(|a, b| squared(a).total_cmp(&squared(b)));
+        let mut at = near.map_or([0.0; 2], |(parameters, _)| *parameters);
+        for _ in 0..STEPS {
+            let jet = surface.derivatives(at[0], at[1]);
+            let gap = point - jet.point;
+            let [e, f, g] = [
+                jet.du.dot(&jet.du),
+                jet.du.dot(&jet.dv),
+                jet.dv.dot(&jet.dv),
+            ];
+            let [a, b] = [gap.dot(&jet.du), gap.dot(&jet.dv)];
+            let area = e * g - f * f;
+            let next = [
+                at[0] + (a * g - b * f) / area,
+                at[1] + (b * e - a * f) / area,
+            ];
+            let [us, vs] = [Axis::U, Axis::V].map(|axis| surface.domain(axis));
+            let next = [next[0].clamp(us[0], us[1]), next[1].clamp(vs[0], vs[1])];
+            // Also where the surface has no area and the step is no number.
+            let nearer = distance(&next) < distance(&at);
+            if !nearer {
+                break;
+            }
+            at = next;
+        }
+        at
     }
 
     /// A ring on the page.
@@ -225,38 +270,4 @@ fn upright(normal: &Vector3<f64>) -> Plane {
             up: main,
         }
     }
-}
-
-/// The parameters of the place of the surface nearest to a point: the nearest
-/// probe, then Gauss–Newton.
-fn foot(surface: &BSplineSurface, point: &Point3<f64>) -> [f64; 2] {
-    const STEPS: usize = 6;
-    let distance = |p: &[f64; 2]| (surface.point(p[0], p[1]) - point).norm_squared();
-    let probes = probes(surface);
-    let near = probes
-        .iter()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let mut at = near.copied().unwrap_or_default();
-    for _ in 0..STEPS {
-        let jet = surface.derivatives(at[0], at[1]);
-        let gap = point - jet.point;
-        let [e, f, g] = [
-            jet.du.dot(&jet.du),
-            jet.du.dot(&jet.dv),
-            jet.dv.dot(&jet.dv),
-        ];
-        let [a, b] = [gap.dot(&jet.du), gap.dot(&jet.dv)];
-        let area = e * g - f * f;
-        let next = [
-            at[0] + (a * g - b * f) / area,
-            at[1] + (b * e - a * f) / area,
-        ];
-        let [us, vs] = [Axis::U, Axis::V].map(|axis| surface.domain(axis));
-        let next = [next[0].clamp(us[0], us[1]), next[1].clamp(vs[0], vs[1])];
-        if !(distance(&next) < distance(&at)) {
-            break;
-        }
-        at = next;
-    }
-    at
 }
