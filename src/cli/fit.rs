@@ -91,8 +91,10 @@ fn deliver(product: &Product, settings: &FitSettings) -> Exit {
     for sentence in document.warnings.iter().chain(&document.summary) {
         out::line(sentence);
     }
-    let value = serde_json::from_slice(&product.result).unwrap_or_default();
-    out::line(&figures::table(&value));
+    if document.method == "hull_plates" {
+        let value = serde_json::from_slice(&product.result).unwrap_or_default();
+        out::line(&figures::table(&value));
+    }
     for path in written {
         match path {
             Ok(path) => out::line(&path.display().to_string()),
