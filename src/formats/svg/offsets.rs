@@ -2,18 +2,23 @@
 //! right, aft body to the left) in its own larger scale, profile with the
 //! buttocks and half-breadth plan in one scale below each other.
 
+mod arrange;
+mod list;
+
 use super::canvas::{Anchor, Canvas, Spot, Stroke, TextStyle};
-use super::key::{self, Sample, cross};
-use super::layout::{MARGIN, PAGE_WIDTH, round_step};
+use super::key::{self, cross};
+use super::layout::{PAGE_WIDTH, round_step};
 use super::legend;
 use super::moves::SLIP;
 use super::page::{self, Words};
 use super::panel::Panel;
 use super::sample::samples;
 use super::text;
-use super::views::{GREY, INK, MARK_RADIUS, mark};
+use super::views::{INK, mark};
 use crate::formats::offsets::{OffsetsDrawing, Placed, by_size, placed};
 use crate::geometry::BSplineCurve;
+use arrange::{Panels, arrange};
+use list::short;
 use nalgebra::Point3;
 
 /// Colour of faired lines.
@@ -22,31 +27,10 @@ const LINE: &str = "#0b4f8a";
 const OLD: &str = "#b5651d";
 /// Lines of the table: where stations and waterlines run straight.
 const TABLE_LINE: &str = "#c3d3e2";
-/// Room left of a panel for its numbers, mm.
-const GUTTER: f64 = 12.0;
-/// Width and height of the body plan at most, mm.
-const BODY: Spot = [176.0, 92.0];
-/// Height of profile and half-breadth plan at most, mm.
-const LONG_HEIGHT: f64 = 60.0;
-/// White space around what is drawn, mm.
-const PADDING: f64 = 4.0;
-/// Space between two panels for numbers and names, mm.
-const GAP: f64 = 15.0;
 /// Moves in the list.
 const MOST_MOVES: usize = 12;
-/// Width of the list of moves, mm.
-const LIST_WIDTH: f64 = 68.0;
 /// Half the length of a tick, mm.
 const TICK: f64 = 0.9;
-
-/// The three panels.
-struct Panels {
-    body: Panel,
-    profile: Panel,
-    plan: Panel,
-    /// Between fore and aft body.
-    midship: f64,
-}
 
 /// The whole page.
 pub(in crate::formats) fn plot(drawing: &OffsetsDrawing) -> String {
@@ -64,7 +48,7 @@ pub(in crate::formats) fn plot(drawing: &OffsetsDrawing) -> String {
         draw_body(&mut canvas, drawing, &panels);
         draw_profile(&mut canvas, drawing, &panels.profile);
         draw_plan(&mut canvas, drawing, &panels.plan);
-        let list = move_list(&mut canvas, drawing, top);
+        let list = list::moves(&mut canvas, drawing, top);
         let bar = [panels.body.bottom().max(list) - 3.0, panels.body.scale[0]];
         legend::scale_bar(&mut canvas, &drawing.units, bar, "body plan");
         y = panels.plan.bottom() + 12.0;
@@ -75,78 +59,10 @@ pub(in crate::formats) fn plot(drawing: &OffsetsDrawing) -> String {
             bar,
             "profile and half-breadth plan",
         );
-        y = key::draw(&mut canvas, &entries(drawing), y);
+        y = key::draw(&mut canvas, &list::key(drawing), y);
     }
     y = page::sentences(&mut canvas, &words, y + 9.5);
     canvas.finish([PAGE_WIDTH, page::height(y)], &drawing.title)
-}
-
-/// Places the panels; `None` when there is nothing to draw.
-fn arrange(drawing: &OffsetsDrawing, top: f64) -> Option<Panels> {
-    let [low, high] = bounds(drawing)?;
-    let left = MARGIN + GUTTER;
-    let breadth = high.y.max(-low.y).max(0.0);
-    let body = fitted([[-breadth, breadth], [low.z, high.z]], [left, top], BODY);
-    let list = top + 5.2 * (MOST_MOVES as f64 + 1.0);
-    let room = [PAGE_WIDTH - MARGIN - left, LONG_HEIGHT];
-    let below = body.bottom().max(list) + GAP;
-    // One scale for both, whichever is the taller.
-    let sides = [[low.z, high.z], [low.y.min(0.0), high.y]];
-    let height = |r: [f64; 2]| r[1] - r[0];
-    let taller = sides.map(height)[0].max(sides.map(height)[1]);
-    let along = [low.x, high.x];
-    let common = fitted([along, [0.0, taller]], [left, below], room).scale[0];
-    let long = |range: [f64; 2], top: f64| Panel {
-        corner: [left, top],
-        size: [along, range].map(|r| height(r) * common + 2.0 * PADDING),
-        low: [along[0], range[0]].map(|c| c - PADDING / common),
-        scale: [common; 2],
-    };
-    let profile = long(sides[0], below);
-    Some(Panels {
-        body,
-        profile,
-        plan: long(sides[1], profile.bottom() + GAP),
-        midship: (low.x + high.x) / 2.0,
-    })
-}
-
-/// A panel of one scale both ways, no larger than `room`.
-fn fitted(ranges: [[f64; 2]; 2], corner: Spot, room: Spot) -> Panel {
-    let extent = ranges.map(|r| r[1] - r[0]);
-    let fits = [0, 1].map(|i| (room[i] - 2.0 * PADDING) / extent[i]);
-    let scale = fits[0].min(fits[1]);
-    let scale = if scale > 0.0 && scale.is_finite() {
-        scale
-    } else {
-        1.0
-    };
-    Panel {
-        corner,
-        size: extent.map(|e| e * scale + 2.0 * PADDING),
-        low: ranges.map(|r| r[0] - PADDING / scale),
-        scale: [scale; 2],
-    }
-}
-
-/// Least and greatest coordinates of offsets and curves.
-fn bounds(drawing: &OffsetsDrawing) -> Option<[Point3<f64>; 2]> {
-    let offsets = placed(drawing).flat_map(|p| {
-        let values = [p.cell.old, p.cell.new, p.cell.slip].into_iter().flatten();
-        values.map(move |y| Point3::new(p.station, y, p.waterline))
-    });
-    let curves = [
-        &drawing.station_curves,
-        &drawing.waterline_curves,
-        &drawing.buttock_curves,
-    ];
-    let curves = curves.into_iter().flatten().flat_map(|(_, c)| samples(c));
-    let points = offsets.chain(curves.map(|(_, p)| p));
-    let finite = points.filter(|p| p.iter().all(|c| c.is_finite()));
-    finite.fold(None, |corners, p| {
-        let [low, high] = corners.unwrap_or([p, p]);
-        Some([low.inf(&p), high.sup(&p)])
-    })
 }
 
 fn frame(canvas: &mut Canvas, panel: &Panel, name: &str) {
@@ -371,87 +287,6 @@ fn draw_plan(canvas: &mut Canvas, drawing: &OffsetsDrawing, panel: &Panel) {
     }
     let to = |p: &Placed, y: f64| panel.map([p.station, y]);
     draw_offsets(canvas, placed(drawing), to, [TICK, 0.0]);
-}
-
-/// The largest moves at the right; returns the lower edge, mm.
-fn move_list(canvas: &mut Canvas, drawing: &OffsetsDrawing, top: f64) -> f64 {
-    const SIZE: f64 = 2.8;
-    let left = PAGE_WIDTH - MARGIN - LIST_WIDTH;
-    let style = |anchor, bold, colour| TextStyle {
-        size: SIZE,
-        colour,
-        anchor,
-        bold,
-    };
-    let mut y = top + 1.0;
-    let columns = [left + 26.0, left + 44.0, left + LIST_WIDTH];
-    let heads = ["station", "waterline", "move"];
-    let bold = style(Anchor::End, true, INK);
-    for (x, head) in columns.iter().zip(heads) {
-        canvas.text([*x, y], bold, head);
-    }
-    for (rank, p) in by_size(drawing).iter().take(MOST_MOVES).enumerate() {
-        y += 5.0;
-        mark(canvas, [left + MARK_RADIUS, y - 0.95], rank + 1);
-        let step = p.cell.step().unwrap_or_default();
-        let step = format!(
-            "{}{}",
-            if step < 0.0 { "−" } else { "+" },
-            short(step.abs())
-        );
-        let colour = if p.cell.slip.is_some() { SLIP } else { INK };
-        let figures = [short(p.station), short(p.waterline), step];
-        for (x, figure) in columns.iter().zip(figures) {
-            let figure = text::clip(&figure, SIZE, 24.0);
-            canvas.text([*x, y], style(Anchor::End, false, colour), &figure);
-        }
-    }
-    if y < top + 2.0 {
-        canvas.text(
-            [left, y + 5.0],
-            style(Anchor::Start, false, GREY),
-            "no offset moved",
-        );
-    }
-    y + 9.0
-}
-
-fn entries(drawing: &OffsetsDrawing) -> Vec<(Sample, String)> {
-    let line = |colour, width| Stroke { colour, width };
-    let mut entries = vec![
-        (
-            Sample::Line(line(LINE, 0.4)),
-            "faired line, named by its place".to_owned(),
-        ),
-        (
-            Sample::Line(line(OLD, 0.35)),
-            "offset as given (tick)".to_owned(),
-        ),
-    ];
-    let any = |test: fn(&Placed) -> bool| placed(drawing).any(|p| test(&p));
-    if any(|p| p.cell.slip.is_some()) {
-        let meaning = "suspected slip; ring: place expected";
-        entries.push((Sample::Cross(line(SLIP, 0.4)), meaning.to_owned()));
-    }
-    if any(|p| p.cell.filled) {
-        let meaning = "offset that was missing, from the fair shape";
-        entries.push((Sample::Disc("#ffffff", line(OLD, 0.2)), meaning.to_owned()));
-    }
-    entries
-}
-
-/// A figure to four digits without trailing zeros.
-fn short(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return "0".to_owned();
-    }
-    let decimals = (3.0 - value.abs().log10().floor()).clamp(0.0, 12.0) as usize;
-    let text = format!("{value:.decimals$}");
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        text
-    }
 }
 
 #[cfg(test)]
