@@ -107,10 +107,14 @@ fn is_empty(text: &str, separator: Separator) -> bool {
         .all(|c| c.is_whitespace() || separator.letter() == Some(c))
 }
 
+/// Cells in a line at most: no table has so many, and a file without line ends
+/// would fill the memory.
+pub(super) const MOST_CELLS: usize = 100_000;
+
 /// Splits a line into `cells`, which are emptied first.
 ///
 /// # Errors
-/// A quote that is not closed.
+/// A quote that is not closed, more cells than [`MOST_CELLS`].
 pub(super) fn split<'a>(
     line: Line<'a>,
     separator: Separator,
@@ -118,11 +122,20 @@ pub(super) fn split<'a>(
 ) -> Result<(), ReadError> {
     cells.clear();
     match separator.letter() {
-        None => cells.extend(line.text.split_whitespace().map(plain)),
+        None => cells.extend(line.text.split_whitespace().take(MOST_CELLS + 1).map(plain)),
         Some(letter) if !line.text.contains('"') => {
-            cells.extend(line.text.split(letter).map(|c| plain(c.trim())));
+            let texts = line.text.split(letter).take(MOST_CELLS + 1);
+            cells.extend(texts.map(|c| plain(c.trim())));
         }
         Some(letter) => split_quoted(line, letter, cells)?,
+    }
+    if cells.len() > MOST_CELLS {
+        let expected = MOST_CELLS;
+        return Err(ReadError::in_line(
+            line.number,
+            line.text,
+            Fault::LongRow { expected },
+        ));
     }
     Ok(())
 }
@@ -167,8 +180,8 @@ fn split_quoted<'a>(
             }
         };
         match tail.strip_prefix(letter) {
-            Some(next) => rest = next,
-            None => return Ok(()),
+            Some(next) if cells.len() <= MOST_CELLS => rest = next,
+            _ => return Ok(()),
         }
     }
 }

@@ -316,6 +316,17 @@ fn errors_quote_briefly_and_speak() {
 }
 
 #[test]
+fn a_line_without_end_is_refused() {
+    let expected = Fault::LongRow {
+        expected: cells::MOST_CELLS,
+    };
+    for piece in ["1;", "1 ", "\"1\","] {
+        let error = fault(&piece.repeat(cells::MOST_CELLS + 5), ACROSS);
+        assert_eq!((error.line, error.fault), (1, expected));
+    }
+}
+
+#[test]
 fn any_bytes_are_read_or_refused() {
     // Every text of length 5 over an alphabet of trouble.
     let alphabet: Vec<&str> = vec![
