@@ -88,9 +88,10 @@ async fn a_half_circle_is_a_circle() {
 #[tokio::test]
 async fn the_slip_of_a_frame_is_named_with_its_value() {
     let service = real_service().await;
-    // Offsets are read athwartships, so that is how the point is to be mended.
+    // Of a frame in its plane x is athwartships: that is how it was read, and
+    // how the point is to be mended.
     let mut job = example("frame");
-    job["options"]["freedom"] = json!("y");
+    job["options"]["freedom"] = json!("x");
     let result = result_of(&service, &job).await;
     let slips = result["method_specific"]["slips"].as_array().unwrap();
     assert_eq!(slips.len(), 1, "{slips:?}");

@@ -167,7 +167,8 @@ impl FairingResult {
             _ => 2,
         };
         let own = self.curves.iter().filter(|c| c.role == role);
-        own.map(|c| Ok((c.control_points[0].0[axis], spline(c)?)))
+        // Adding zero makes −0 plain.
+        own.map(|c| Ok((c.control_points[0].0[axis] + 0.0, spline(c)?)))
             .collect()
     }
 }

@@ -204,7 +204,8 @@ pub struct CellTolerance {
     pub tolerance: f64,
 }
 
-/// Along which axes points may move: `y` alone for half-breadths.
+/// Along which axes points may move: `y` alone for half-breadths. Of points in
+/// a plane the first coordinate is x and the second y.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Freedom {
