@@ -3,7 +3,8 @@
 //! A mould loft is where a ship's lines are drawn full size, faired, and its
 //! plates developed. This crate is that loft behind HTTP: a JSON job with the
 //! profile curves of a hull goes in; B-spline plates that a yard can bend from
-//! flat steel come out, with the figures that prove it.
+//! flat steel come out, with the figures that prove it. Or measured offsets go
+//! in, and fair lines and surfaces come out, with the table of corrections.
 //!
 //! ```text
 //!             app ─────────────► everything
@@ -34,7 +35,8 @@
 //!
 //! ## Reading order
 //!
-//! [`methods::hull_plates`] for what is computed and why, [`solver`] for how
+//! [`methods::hull_plates`] and [`methods::fairing`] for what is computed and
+//! why, [`solver`] for how
 //! it is minimised, [`geometry`] for the splines beneath; [`jobs`] for the
 //! durable queue and [`http`] for the contract with the world.
 

@@ -304,9 +304,12 @@ async fn every_fault_has_its_place() {
     }
 }
 
+/// Name, more of its head, text.
+type Part<'a> = (&'a str, &'a str, &'a str);
+
 const BOUNDARY: &str = "--edge-of-a-part";
 
-fn form(parts: &[(&str, &str, &str)]) -> String {
+fn form(parts: &[Part<'_>]) -> String {
     let mut body = String::new();
     for (name, more, text) in parts {
         body += &format!(
@@ -316,7 +319,7 @@ fn form(parts: &[(&str, &str, &str)]) -> String {
     body + &format!("--{BOUNDARY}--\r\n")
 }
 
-async fn post_form(service: &Service, path: &str, parts: &[(&str, &str, &str)]) -> Answer {
+async fn post_form(service: &Service, path: &str, parts: &[Part<'_>]) -> Answer {
     let kind = format!("multipart/form-data; boundary={BOUNDARY}");
     service
         .post_with(path, &[("content-type", &kind)], form(parts))
@@ -385,7 +388,7 @@ async fn a_form_that_is_wrong_says_where() {
     let plates = json!({"method": "hull_plates", "units": "m", "input": {}}).to_string();
     let both = json!({"method": "fairing", "units": "m", "input": {"points": [[0, 0], [1, 1]]}})
         .to_string();
-    let cases: [(Vec<(&str, &str, &str)>, u16, &str, &str); 6] = [
+    let cases: [(Vec<Part>, u16, &str, &str); 6] = [
         (vec![("job", "", &job)], 400, "syntax", "file"),
         (vec![("file", FILE, good)], 400, "syntax", "job"),
         (

@@ -18,7 +18,8 @@ use utoipa::{IntoResponses, OpenApi as _, PartialSchema, ToSchema};
         title = "mouldloft",
         description = "Surface fitting for shipyards. Post the profile curves of a hull; get \
                        B-spline plates that can be bent from flat steel, with the figures that \
-                       prove it.\n\nErrors are problem documents (RFC 9457). Unknown fields and \
+                       prove it. Post measured offsets; get fair lines and surfaces, with the \
+                       table of corrections.\n\nErrors are problem documents (RFC 9457). Unknown fields and \
                        unknown query parameters are refused. Every answer carries `X-Request-Id`.",
         license(name = "MIT OR Apache-2.0"),
     ),

@@ -117,7 +117,7 @@ impl Blocks {
     }
 
     /// ½ Σ r² + ½ Σ max(0, r)², for the residuals or for other values of them;
-    /// with a smoothing, [`soft_plus`] stands for max(0, r).
+    /// with a smoothing μ, (r + √(r² + 4μ²))/2 stands for max(0, r).
     #[must_use]
     pub fn cost_of(&self, values: &[f64], smoothing: f64) -> f64 {
         let counts = |(r, one_sided): (&f64, &bool)| {

@@ -12,6 +12,7 @@ use uuid::Uuid;
 /// The figures of a fit, by its method.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
+#[allow(clippy::large_enum_variant)] // A schema, never a value.
 pub enum Figures {
     /// Of `hull_plates`.
     HullPlates(HullPlatesDiagnostics),

@@ -18,6 +18,7 @@ pub const DEFAULT_BUDGET_S: f64 = 60.0;
 /// A job as it is posted: one shape for each method.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
+#[allow(clippy::large_enum_variant)] // A schema, never a value.
 pub enum JobRequest {
     /// Developable plates between a hull's profile curves.
     HullPlates(HullPlatesJob),

@@ -8,6 +8,7 @@ use utoipa::ToSchema;
 /// The result of a job: one shape for each method.
 #[derive(Debug, Clone, PartialEq, Serialize, ToSchema)]
 #[serde(untagged)]
+#[allow(clippy::large_enum_variant)] // A schema, never a value.
 pub enum ResultDocument {
     /// Of `hull_plates`.
     HullPlates(HullPlatesResult),

@@ -9,8 +9,9 @@
 //! (Qᵢ/ν), its chance multiplied by the number of points (Bonferroni); if
 //! that is small it is set aside and the rest is looked at again.
 //!
-//! Slips stand alone. A run of neighbours that are all off is a bend that the
-//! curve does not follow, and is not called slips.
+//! Slips stand alone. A run of neighbours that are all off, each about as much
+//! as the next, is a bend that the curve does not follow, and is not called
+//! slips.
 //!
 //! Many points hide nothing: there the spread of the residuals is estimated by
 //! its median, which a few per cent of slips do not move, points far outside
@@ -82,7 +83,8 @@ pub(super) fn suspects<const D: usize>(
             set_aside.push((*i, chance));
         }
     }
-    let set_aside = alone(set_aside, &springs);
+    let residuals = springs.residuals(&shape.space, &shape.x);
+    let set_aside = alone(set_aside, &springs, &residuals);
     if set_aside.is_empty() {
         return Ok(Vec::new());
     }
@@ -112,17 +114,29 @@ pub(super) fn suspects<const D: usize>(
     Ok(found)
 }
 
-/// Of points set aside, those that are not part of a run along the curve.
-fn alone<const D: usize>(found: Vec<(usize, f64)>, springs: &Springs<D>) -> Vec<(usize, f64)> {
+/// Of points set aside, those that are not part of a bend: a run along the
+/// curve whose distances follow on one another.
+fn alone<const D: usize>(
+    found: Vec<(usize, f64)>,
+    springs: &Springs<D>,
+    residuals: &[Vector<D>],
+) -> Vec<(usize, f64)> {
     /// Points in a row that make a run.
     const RUN: usize = 3;
+    /// Neighbours of a bend differ by at most this share of the larger; slips
+    /// that happen to be neighbours have nothing to do with one another.
+    const FOLLOWS: f64 = 0.5;
     let mut along: Vec<usize> = (0..springs.feet.len()).collect();
     along.sort_by(|a, b| springs.feet[*a].total_cmp(&springs.feet[*b]).then(a.cmp(b)));
     let mut off = vec![false; along.len()];
     found.iter().for_each(|(i, _)| off[*i] = true);
     let mut kept = vec![false; along.len()];
+    let follows = |pair: &[usize]| {
+        let [a, b] = [residuals[pair[0]], residuals[pair[1]]];
+        (a - b).norm() <= FOLLOWS * a.norm().max(b.norm())
+    };
     for run in along.chunk_by(|a, b| off[*a] == off[*b]) {
-        if off[run[0]] && run.len() < RUN {
+        if off[run[0]] && (run.len() < RUN || !run.windows(2).all(follows)) {
             run.iter().for_each(|i| kept[*i] = true);
         }
     }

@@ -62,3 +62,32 @@ fn five_per_cent_of_outliers_do_not_bend_a_robust_curve() {
     assert!((0.8..1.25).contains(&ratio), "roughness ratio {ratio}");
     assert!(o.slips.len() >= 24 && o.slips.iter().all(|s| s.index % 20 == 7));
 }
+
+/// At random places, so that some are neighbours.
+#[test]
+fn outliers_in_a_row_are_outliers_too() {
+    let mut noise = Noise(47);
+    let mut points = frame(2000, 0.005, 48);
+    let mut bad = Vec::new();
+    for (k, p) in points.iter_mut().enumerate() {
+        // Three in a row among them.
+        if noise.uniform() < 0.05 || (900..903).contains(&k) {
+            p.x += 0.3 * noise.normal();
+            p.y += 0.3 * noise.normal();
+            bad.push(k);
+        }
+    }
+    let mut request = Request::through(points, 2);
+    request.options.robust = true;
+    let o = fitted(&request);
+    let ratio = o.after.curvature_variation / frame_variation();
+    assert!((0.8..1.25).contains(&ratio), "roughness ratio {ratio}");
+    let gross = 0.9 * bad.len() as f64;
+    assert!(
+        o.slips.len() as f64 >= gross,
+        "{} of {}",
+        o.slips.len(),
+        bad.len()
+    );
+    assert!(o.slips.iter().filter(|s| bad.contains(&s.index)).count() + 3 >= o.slips.len());
+}
