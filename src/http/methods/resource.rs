@@ -140,10 +140,7 @@ fn fields(schema: &Value, defaults: &Value, lengths: &[&str]) -> Vec<FieldDescri
     properties
         .into_iter()
         .map(|(name, mut field)| FieldDescription {
-            description: field["description"]
-                .as_str()
-                .unwrap_or_default()
-                .replace('\n', " "),
+            description: words_of(&field).replace('\n', " "),
             required: required.contains(&Value::from(name.as_str())),
             unit: unit(&name, lengths).map(str::to_owned),
             default: defaults[&name].clone(),
@@ -157,6 +154,14 @@ fn fields(schema: &Value, defaults: &Value, lengths: &[&str]) -> Vec<FieldDescri
             name,
         })
         .collect()
+}
+
+/// A field's description; where it may be null, that of the other choice.
+fn words_of(field: &Value) -> &str {
+    let own = field["description"].as_str();
+    let choices = field["oneOf"].as_array().into_iter().flatten();
+    let other = choices.filter_map(|c| c["description"].as_str()).next();
+    own.or(other).unwrap_or_default()
 }
 
 fn unit(name: &str, lengths: &[&str]) -> Option<&'static str> {
