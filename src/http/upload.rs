@@ -121,7 +121,8 @@ fn merged(job: &[u8], file: &File) -> Result<Posted, ApiError> {
 }
 
 /// A job with its file, for the document.
-#[derive(utoipa::ToSchema)]
+#[derive(serde::Deserialize, utoipa::ToSchema)]
+#[serde(deny_unknown_fields)]
 #[allow(dead_code)] // A schema, never a value.
 pub struct JobWithFile {
     /// The job, without the points that are in the file; `input.file` says what
@@ -131,6 +132,6 @@ pub struct JobWithFile {
     /// Points, or a table of offsets, as text: columns apart by comma,
     /// semicolon, tab or blanks, decimal point or comma, with or without
     /// headers and comments.
-    #[schema(value_type = String, format = Binary)]
-    file: Bytes,
+    #[schema(format = Binary)]
+    file: String,
 }
