@@ -11,7 +11,15 @@ use utoipa::{PartialSchema, ToSchema};
 
 /// The largest coordinate in the smallest unit: 1e6 m in millimetres. The
 /// bound for the job's own unit is checked with the unit known.
-pub(super) const LARGEST_COORDINATE: f64 = 1e9;
+const LARGEST_COORDINATE: f64 = 1e9;
+
+/// The schema of one coordinate.
+pub(super) fn coordinate() -> ObjectBuilder {
+    ObjectBuilder::new()
+        .schema_type(SchemaType::Type(Type::Number))
+        .minimum(Some(-LARGEST_COORDINATE))
+        .maximum(Some(LARGEST_COORDINATE))
+}
 
 /// A point as three coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -21,12 +29,8 @@ pub struct Point(pub [f64; 3]);
 impl PartialSchema for Point {
     /// utoipa gives `[f64; 3]` no counts, so that two coordinates would pass.
     fn schema() -> RefOr<Schema> {
-        let coordinate = ObjectBuilder::new()
-            .schema_type(SchemaType::Type(Type::Number))
-            .minimum(Some(-LARGEST_COORDINATE))
-            .maximum(Some(LARGEST_COORDINATE));
         ArrayBuilder::new()
-            .items(coordinate)
+            .items(coordinate())
             .min_items(Some(3))
             .max_items(Some(3))
             .description(Some("x, y, z"))

@@ -59,7 +59,8 @@ const MOVE_ANGLE: f64 = 3.5e-4;
 /// Weight of their second differences: enough against ripple from coefficient
 /// to coefficient, too little to spread a move.
 const FAIRNESS: f64 = 0.02;
-/// Between samples a twist above this many targets is a peak to look at.
+/// Between samples a twist above the target, and above the largest at a sample,
+/// by this factor is a peak to look at.
 const PEAK: f64 = 1.05;
 /// A plate that is still rough between so many samples is not to be had.
 const MOST_SAMPLES: usize = 1500;

@@ -1,6 +1,6 @@
 //! Points of two or three coordinates, and indices, on the wire.
 
-use super::super::curves::LARGEST_COORDINATE;
+use super::super::curves::coordinate;
 use nalgebra::Point3;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeSeq;
@@ -76,12 +76,8 @@ impl<'de> Visitor<'de> for Coordinates {
 
 impl PartialSchema for MeasuredPoint {
     fn schema() -> RefOr<Schema> {
-        let coordinate = ObjectBuilder::new()
-            .schema_type(SchemaType::Type(Type::Number))
-            .minimum(Some(-LARGEST_COORDINATE))
-            .maximum(Some(LARGEST_COORDINATE));
         ArrayBuilder::new()
-            .items(coordinate)
+            .items(coordinate())
             .min_items(Some(2))
             .max_items(Some(3))
             .description(Some("x, y, or x, y, z"))
