@@ -1,6 +1,7 @@
 //! The fitting methods. Each is a pure, synchronous function of a request and
 //! a [`Control`]; none knows HTTP, the wire or the clock.
 
+pub mod cone_spline;
 pub mod fairing;
 pub mod hull_plates;
 
