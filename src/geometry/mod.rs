@@ -1,4 +1,4 @@
-//! Curves and surfaces: B-splines, ruled surfaces, distances. Knows numerics,
+//! Curves and surfaces: B-splines, ruled surfaces, meshes, distances. Knows numerics,
 //! nothing above.
 
 mod arc_length;
@@ -8,6 +8,7 @@ mod closest;
 #[cfg(test)]
 pub(crate) mod conformance;
 mod distance;
+pub mod mesh;
 mod ruled;
 mod tolerance;
 
@@ -20,5 +21,6 @@ pub use bspline::{
 };
 pub use closest::{Closest, CurveIndex};
 pub use distance::{CurveDistance, directed_distance, directed_distance_between};
+pub use mesh::{Face, Manifold, Mesh, MeshError, MeshFault, Topology};
 pub use ruled::{FundamentalForms, RuledSurface, RulingJet};
 pub use tolerance::Tolerance;
