@@ -2,6 +2,7 @@
 //! a [`Control`]; none knows HTTP, the wire or the clock.
 
 pub mod cone_spline;
+pub mod curvature_net;
 pub mod fairing;
 pub mod hull_plates;
 
