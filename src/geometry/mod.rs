@@ -4,10 +4,12 @@
 mod arc_length;
 mod bounding_box;
 pub mod bspline;
+mod circular_arc;
 mod closest;
 #[cfg(test)]
 pub(crate) mod conformance;
 mod distance;
+mod dupin_cyclide;
 pub mod mesh;
 mod ruled;
 mod tolerance;
@@ -19,8 +21,10 @@ pub use bspline::{
     SplineError, SurfaceJet, basis_jet, complete_cubic, gram, interpolate, interpolate_grid,
     interpolation_parameters, join_c0,
 };
+pub use circular_arc::CircularArc;
 pub use closest::{Closest, CurveIndex};
 pub use distance::{CurveDistance, directed_distance, directed_distance_between};
+pub use dupin_cyclide::{CyclideCorner, CyclideError, CyclidePatch};
 pub use mesh::{Face, Manifold, Mesh, MeshError, MeshFault, Topology};
 pub use ruled::{FundamentalForms, RuledSurface, RulingJet};
 pub use tolerance::Tolerance;
