@@ -1,6 +1,6 @@
 //! The quaternionic bilinear patch and its real form.
 
-use crate::geometry::{BSplineSurface, CircularArc};
+use crate::geometry::{Axis, BSplineSurface, CircularArc};
 use nalgebra::{Point3, Quaternion, Vector3};
 use thiserror::Error;
 
@@ -104,6 +104,40 @@ impl CyclidePatch {
         let (over, under) = (sum(&self.numerators), sum(&self.denominators));
         let quotient = over * under.conjugate() / under.norm_squared();
         self.corners[0].point + quotient.imag()
+    }
+
+    /// (u, v) on a side (numbered as in [`Self::sides`]) for a parameter in
+    /// [0, 1] that is the same for the patch on the other side of it: that of
+    /// the arc as a rational quadratic with end weights 1.
+    #[must_use]
+    pub fn on_side(&self, side: usize, parameter: f64) -> [f64; 2] {
+        let [from, to] = SIDES[side].map(|i| self.denominators[i].norm());
+        let own = from * parameter / (to * (1.0 - parameter) + from * parameter);
+        match side {
+            0 => [own, 0.0],
+            1 => [own, 1.0],
+            2 => [0.0, own],
+            _ => [1.0, own],
+        }
+    }
+
+    /// Where the tangents at the two ends of a parameter line meet: of the
+    /// line across `along` at the parameter `at`. Those of all lines are a
+    /// conic, in which the two cones meet that touch the patch along its two
+    /// sides in the direction `along`.
+    #[must_use]
+    pub fn tangents_meet(&self, along: Axis, at: f64) -> Point3<f64> {
+        let terms = self.terms();
+        let middle = match along {
+            Axis::U => [1, 4, 7],
+            Axis::V => [3, 4, 5],
+        };
+        let basis = [(1.0 - at) * (1.0 - at), 2.0 * at * (1.0 - at), at * at];
+        let (place, weight) = (middle.into_iter().zip(basis))
+            .fold((Vector3::zeros(), 0.0), |(place, weight), (i, b)| {
+                (place + terms[i].1 * b, weight + terms[i].2 * b)
+            });
+        self.corners[0].point + place / weight
     }
 
     /// The largest real part of the biquadratic form over the patch's size:

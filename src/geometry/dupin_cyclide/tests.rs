@@ -176,6 +176,44 @@ fn the_sides_are_the_arcs_of_the_corners() {
 }
 
 #[test]
+fn the_cones_along_opposite_sides_meet_in_the_conic_of_the_tangents() {
+    for (index, surface) in surfaces().iter().enumerate() {
+        let patch = patch_of(surface);
+        let spline = patch.surface().expect("positive weights");
+        for along in [Axis::U, Axis::V] {
+            for parameter in [0.0, 0.3, 0.75] {
+                let (low, high) = match along {
+                    Axis::U => ([parameter, 0.0], [parameter, 1.0]),
+                    Axis::V => ([0.0, parameter], [1.0, parameter]),
+                };
+                let meet = patch.tangents_meet(along, parameter);
+                for [u, v] in [low, high] {
+                    let jet = spline.derivatives_left(u, v);
+                    let across = if along == Axis::U { jet.dv } else { jet.du };
+                    let off = (meet - jet.point).cross(&across.normalize()).norm();
+                    assert!(off < 1e-12, "{index}: {off}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn neighbours_agree_about_the_places_on_a_side() {
+    let surface = torus(3.0, 1.0, [0.1, 0.9], [-0.3, 0.8]);
+    let beside = torus(3.0, 1.0, [0.1, 0.9], [0.8, 1.4]);
+    for (surface, beside) in [
+        (patch_of(&surface), patch_of(&beside)),
+        (patch_of(&inverted(surface)), patch_of(&inverted(beside))),
+    ] {
+        for parameter in [0.1, 0.5, 0.8] {
+            let [[u, v], [s, t]] = [surface.on_side(1, parameter), beside.on_side(0, parameter)];
+            assert!((surface.point(u, v) - beside.point(s, t)).norm() < 1e-13);
+        }
+    }
+}
+
+#[test]
 fn unusable_corners_are_refused() {
     let surface = torus(3.0, 1.0, [0.0, 3.2], [0.0, 0.5]);
     let wide = patch_of(&surface);
