@@ -4,6 +4,7 @@
 //! point: unlike centre and radius these stay finite as the arc becomes
 //! straight, and nothing that is computed from them loses digits there.
 
+use crate::numerics::sinc;
 use nalgebra::{Point3, Vector3};
 
 /// A circular arc, or a straight segment, of less than a full turn.
@@ -139,17 +140,6 @@ impl CircularArc {
     /// The part of a vector that is square to the first tangent.
     fn across(&self, vector: &Vector3<f64>) -> Vector3<f64> {
         vector - self.tangent * vector.dot(&self.tangent)
-    }
-}
-
-/// sin x / x.
-pub(super) fn sinc(x: f64) -> f64 {
-    // Below this the next term, x⁴/120, is lost in rounding.
-    const SMALL: f64 = 1e-3;
-    if x.abs() < SMALL {
-        1.0 - x * x / 6.0
-    } else {
-        x.sin() / x
     }
 }
 
