@@ -41,8 +41,12 @@
 //! # Limits
 //! Nets without singular vertices only; see [`request::Input`].
 
+pub mod build;
+pub mod cyclide;
 pub mod net;
+pub mod outcome;
 pub mod request;
+pub mod structure;
 
 pub use net::Net;
 pub use request::Request;

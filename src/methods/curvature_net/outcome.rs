@@ -1,0 +1,90 @@
+//! What the method gives. Lengths in the unit of the request; nothing here
+//! depends on time or thread count.
+
+use super::cyclide::Certificate;
+use super::net::Net;
+use super::structure::{Member, Offset, Strip, Support};
+use crate::geometry::CyclidePatch;
+
+/// The exact cyclide spline and what is built from it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cyclides {
+    /// Circular quads with mirrored frames.
+    pub net: Net,
+    /// One patch a quad, row after row; none where a side turns by half a turn
+    /// or more, or two corners are one point.
+    pub patches: Vec<Option<CyclidePatch>>,
+    /// The proof of each patch.
+    pub certificates: Vec<Option<Certificate>>,
+    /// Figures of the whole.
+    pub figures: CyclideFigures,
+    /// Conical strips, line by line.
+    pub strips: Vec<Strip>,
+    /// Offsets in the order asked.
+    pub offsets: Vec<Offset>,
+    /// Supports on all lines; empty unless asked.
+    pub supports: Vec<Support>,
+    /// Every arc of the net.
+    pub members: Vec<Member>,
+}
+
+/// Figures of a cyclide spline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclideFigures {
+    /// The largest residual of each kind, and the patch of the largest of all
+    /// by row and column.
+    pub worst: Certificate,
+    /// Where the worst of them is.
+    pub worst_patch: [usize; 2],
+    /// Patches that could not be made.
+    pub missing: usize,
+    /// What carrying one frame through the net by mirrors would miss.
+    pub closure: f64,
+    /// The mean edge of the net.
+    pub mean_edge: f64,
+    /// Ways of the vertices from the smooth surface's.
+    pub moved: Spread,
+    /// Turns of the normals, radians.
+    pub turned: Spread,
+    /// Iterations of the solver.
+    pub iterations: usize,
+}
+
+/// Mean and largest of a figure over the vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// Largest.
+    pub max: f64,
+    /// Row and column of the largest.
+    pub at: [usize; 2],
+}
+
+impl Spread {
+    /// Of one value a vertex of a net with so many columns.
+    #[must_use]
+    pub fn of(values: &[f64], columns: usize) -> Self {
+        let mut spread = Spread::default();
+        for (index, value) in values.iter().enumerate() {
+            spread.mean += value / values.len() as f64;
+            if *value > spread.max {
+                spread.max = *value;
+                spread.at = [index / columns, index % columns];
+            }
+        }
+        spread
+    }
+}
+
+impl CyclideFigures {
+    /// Whether it is what it is called: every patch there, every residual at
+    /// most [`PROOF`].
+    #[must_use]
+    pub fn is_proved(&self) -> bool {
+        self.missing == 0 && self.worst.worst() <= PROOF && self.closure <= PROOF
+    }
+}
+
+/// What a certificate may have left, radians or without unit.
+pub const PROOF: f64 = 1e-9;
