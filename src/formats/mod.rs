@@ -11,6 +11,7 @@
 //! | [`svg`] | the lines plan with the rulings coloured by twist | print, README, browser |
 //! | [`fair_curve`] | corrections of a faired curve (CSV), its plot (SVG) | loftsmen, print |
 //! | [`fair_surface`] | a trimmed mesh (OBJ), corrections (CSV), isophotes (SVG) | CAD, loftsmen, print |
+//! | [`cyclides`] | a net of patches (OBJ), the bill of its arcs (CSV), the flat patterns of its strips (SVG) | CAD, yards, cutting |
 //! | [`offsets`] | a faired table of offsets (CSV), its lines plan (SVG) | loftsmen, print |
 //!
 //! One module reads: [`points_in`], lists of points and tables of offsets as
@@ -18,6 +19,7 @@
 //! changes a number.
 
 pub mod csv;
+pub mod cyclides;
 pub mod fair_curve;
 pub mod fair_points;
 pub mod fair_surface;

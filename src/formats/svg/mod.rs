@@ -20,6 +20,7 @@ mod moves;
 pub(super) mod offsets;
 mod page;
 mod panel;
+pub(super) mod patterns;
 mod sample;
 mod text;
 mod views;
