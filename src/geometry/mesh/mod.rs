@@ -16,6 +16,7 @@ mod face;
 mod fault;
 mod manifold;
 mod measure;
+mod quad_grid;
 #[cfg(test)]
 mod tests;
 mod topology;
@@ -23,6 +24,7 @@ mod topology;
 pub use face::Face;
 pub use fault::{MeshError, MeshFault};
 pub use manifold::Manifold;
+pub use quad_grid::{QuadGrid, QuadGridFault};
 pub use topology::Topology;
 
 use nalgebra::Point3;
