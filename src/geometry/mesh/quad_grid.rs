@@ -203,7 +203,7 @@ impl Walker<'_> {
             closed: [closes, row_closes],
             vertices,
         };
-        grid.is_long_enough()
+        grid.with_long_rounds()
     }
 
     /// The faces of a row from a first one on, to the end of the row or once
@@ -267,7 +267,7 @@ struct Row {
 const SHORTEST_ROUND: usize = 3;
 
 impl QuadGrid {
-    fn is_long_enough(self) -> Result<QuadGrid, QuadGridFault> {
+    fn with_long_rounds(self) -> Result<QuadGrid, QuadGridFault> {
         for (closed, count) in self.closed.into_iter().zip([self.rows, self.columns]) {
             if closed && count < SHORTEST_ROUND {
                 let vertex = self.vertices[0];

@@ -18,13 +18,13 @@
 //!   the geodesic torsion times the length of the border, radians; 0 ⇔ N_c ∥ c′
 //!   ⇔ c is a line of curvature (do Carmo 1976, §3.3);
 //! * squareness: S_u·S_v / (|S_u| |S_v|) at every vertex;
-//! * fairness: differences of second derivatives along the lines;
-//! * closeness: the way of a vertex from the start, or from the tangent plane
-//!   at the closest point of a target.
+//! * closeness: the way D = S − S₀ of a vertex from the start S₀, along its
+//!   normal and across it;
+//! * fairness: the bending D_uu, D_vv, D_uv, D_uuv, D_uvv of the way.
 //!
-//! The torsion's weight rises ×1, ×10, ×100 on every level; then each patch is
-//! split in four, which changes nothing of the shape, until the net is as fine
-//! as asked.
+//! The torsion's weight rises ×1, ×10, ×100, ×1000 on every level; then each
+//! patch is split in four, which changes nothing of the shape, until the net is
+//! as fine as asked.
 //!
 //! # Sources
 //! Zheng & Bo, *Design of smooth surfaces with regular network of curvature
@@ -37,16 +37,27 @@
 //! * Hermite unknowns at the vertices instead of Bézier points: the paper's
 //!   F_smooth is not needed, and there are 12 unknowns a patch instead of 48.
 //! * The torsion is an angle, so that its weight does not depend on size.
+//! * Fairness is asked of the way from the start instead of the vertices, so
+//!   that a net that is laid right stays as it is.
 //!
 //! # Limits
 //! Nets without singular vertices only; see [`request::Input`].
 
+mod bend;
 pub mod build;
 pub mod cyclide;
+pub mod diagnose;
+mod input;
+pub mod lines;
 pub mod net;
 pub mod outcome;
 pub mod request;
+mod smooth;
 pub mod structure;
+pub mod surface;
 
+pub use input::MOST_PATCHES;
 pub use net::Net;
 pub use request::Request;
+pub use smooth::{Smooth, smooth};
+pub use surface::Surface;

@@ -1,0 +1,181 @@
+//! The least-squares problem of one level.
+
+use super::edge::{COLUMNS, Edge, edges, vector};
+use super::hold::Hold;
+use crate::methods::curvature_net::surface::{Surface, UNKNOWNS};
+use crate::solver::{Blocks, LeastSquares};
+use rayon::prelude::*;
+
+/// Weights of the residuals, lengths in mean edges of the first net.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weights {
+    /// Of torsion (per radian) and squareness.
+    pub(super) torsion: f64,
+    /// Of the way of a vertex.
+    pub(super) close: f64,
+    /// Of its part along the start's tangent plane, relative to that.
+    pub(super) sliding: f64,
+    /// Of the bending of the way.
+    pub(super) bending: f64,
+    /// Of the bending of its slope across a line.
+    pub(super) cross_bending: f64,
+}
+
+/// Bending against closeness: waves of the way that are shorter than 2π √0.3,
+/// some three edges of the first net, cost more by their bending.
+const BENDING: f64 = 0.3;
+/// A net that slides within the surface keeps its shape, but loses its seams.
+const SLIDING: f64 = 1.0;
+
+impl Weights {
+    /// For a torsion's weight and the user's closeness.
+    pub(super) fn new(torsion: f64, closeness: f64) -> Self {
+        Weights {
+            torsion,
+            close: closeness,
+            sliding: SLIDING,
+            bending: BENDING * closeness,
+            cross_bending: BENDING * closeness,
+        }
+    }
+}
+
+/// Places of a border where its torsion is a residual. With the squareness
+/// these are 11 residuals for each 12 unknowns; 9 leave ripples between them.
+const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
+
+/// One level: the surface is near the start, its lines are lines of curvature.
+pub(super) struct Level<'a> {
+    weights: Weights,
+    vertices: usize,
+    edges: Vec<Edge>,
+    hold: Hold<'a>,
+}
+
+impl<'a> Level<'a> {
+    pub(super) fn new(start: &'a Surface, weights: Weights) -> Self {
+        Level {
+            weights,
+            vertices: start.vertices().len(),
+            edges: edges(start),
+            hold: Hold::new(start),
+        }
+    }
+
+    /// Torsions of a border with their derivatives, where these are wanted.
+    fn torsions(&self, edge: &Edge, x: &[f64], wants_jacobian: bool) -> Torsions {
+        let mut jacobian = Vec::new();
+        let residuals = PLACES.map(|t| {
+            let torsion = edge.jet(x, t).torsion();
+            if wants_jacobian {
+                jacobian.extend(edge.row(t, &torsion, self.weights.torsion));
+            }
+            torsion.value * self.weights.torsion
+        });
+        Torsions {
+            residuals,
+            jacobian,
+        }
+    }
+
+    /// The cosine between the lines at every vertex.
+    fn squareness(&self, x: &[f64], blocks: &mut Blocks) {
+        let f = self.weights.torsion;
+        for v in 0..self.vertices {
+            let at = v * UNKNOWNS + 3;
+            let (a, b) = (vector(x, at), vector(x, at + 3));
+            let (length_a, length_b) = (a.norm(), b.norm());
+            let cosine = a.dot(&b) / (length_a * length_b);
+            let by_a = (b / length_b - a * (cosine / length_a)) * (f / length_a);
+            let by_b = (a / length_a - b * (cosine / length_b)) * (f / length_b);
+            let columns: [usize; 6] = std::array::from_fn(|k| at + k);
+            let jacobian: [f64; 6] =
+                std::array::from_fn(|k| if k < 3 { by_a[k] } else { by_b[k - 3] });
+            blocks.push(&[f * cosine], &columns, &jacobian);
+        }
+    }
+}
+
+struct Torsions {
+    residuals: [f64; PLACES.len()],
+    jacobian: Vec<f64>,
+}
+
+/// Borders that one thread takes at least.
+const BATCH: usize = 64;
+
+impl LeastSquares for Level<'_> {
+    fn dimension(&self) -> usize {
+        self.vertices * UNKNOWNS
+    }
+
+    fn evaluate(&self, x: &[f64], blocks: &mut Blocks) {
+        let wants_jacobian = blocks.wants_jacobian();
+        let torsions: Vec<Torsions> = self
+            .edges
+            .par_iter()
+            .with_min_len(BATCH)
+            .map(|edge| self.torsions(edge, x, wants_jacobian))
+            .collect();
+        for (edge, found) in self.edges.iter().zip(&torsions) {
+            let columns: [usize; COLUMNS] = edge.columns();
+            blocks.push(&found.residuals, &columns, &found.jacobian);
+        }
+        self.squareness(x, blocks);
+        self.hold.closeness(x, &self.weights, blocks);
+        self.hold.bending(x, &self.edges, &self.weights, blocks);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::start::through;
+    use super::*;
+    use crate::methods::curvature_net::net::Layout;
+    use crate::solver::derivative_check::worst_disagreement;
+    use nalgebra::Point3;
+
+    fn wavy(closed: [bool; 2]) -> Surface {
+        let layout = Layout {
+            rows: 4,
+            columns: 3,
+            closed,
+        };
+        let points: Vec<_> = (0..12)
+            .map(|k| {
+                let (i, j) = ((k / 3) as f64, (k % 3) as f64);
+                let height = 0.3 * (i * 1.3).sin() + 0.2 * (i * j + 0.4).cos();
+                Point3::new(i + 0.1 * j, j - 0.05 * i * j, height)
+            })
+            .collect();
+        through(layout, &points)
+    }
+
+    #[test]
+    fn derivatives_agree_with_differences() {
+        for closed in [[false, false], [true, false]] {
+            let start = wavy(closed);
+            let problem = Level::new(&start, Weights::new(2.0, 1.5));
+            let x: Vec<f64> = (start.unknowns().iter().enumerate())
+                .map(|(k, x)| x + 0.05 * (k as f64 * 1.7).sin())
+                .collect();
+            let worst = worst_disagreement(&problem, &x, 1e-6);
+            assert!(worst.relative < 1e-7, "{worst:?}");
+        }
+    }
+
+    #[test]
+    fn a_split_changes_no_torsion() {
+        let start = wavy([false, false]);
+        let split = start.split();
+        let (x, y) = (start.unknowns(), split.unknowns());
+        let (coarse, fine) = (edges(&start), edges(&split));
+        // Half a border has half the length.
+        let whole = coarse[1].jet(&x, 0.25).torsion().value;
+        let at = fine
+            .iter()
+            .find(|e| e.direction == 0 && e.ends[0] == 2 * (coarse[1].ends[0] % 3));
+        let half = at.map(|e| e.jet(&y, 0.5).torsion().value);
+        assert!((half.unwrap_or(f64::NAN) - 0.5 * whole).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,99 @@
+//! Stage 1 as a whole: from the request to the smooth surface and what can be
+//! said about it, in the user's scale.
+
+use super::diagnose::{At, BorderFigures, ShapeFigures, UmbilicFigures};
+use super::input::Task;
+use super::lines::{Step, solve};
+use super::request::Request;
+use super::surface::Surface;
+use crate::methods::{Control, FitError};
+use nalgebra::Point3;
+
+/// A smooth surface whose patch borders are lines of curvature.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smooth {
+    /// The surface.
+    pub surface: Surface,
+    /// The start, through the given points, split like it.
+    pub start: Surface,
+    /// Index in the request of the vertices of the coarse net, row after row;
+    /// after `levels` splits they are every 2^levels-th of the surface.
+    pub given: Vec<usize>,
+    /// How often patches were split in four.
+    pub levels: usize,
+    /// How far its borders are from lines of curvature.
+    pub borders: BorderFigures,
+    /// Where its curvatures come near each other.
+    pub umbilics: UmbilicFigures,
+    /// How far it is from the start.
+    pub shape: ShapeFigures,
+    /// What every minimisation did.
+    pub steps: Vec<Step>,
+}
+
+/// The smooth surface for a request.
+///
+/// # Errors
+/// [`FitError::Invalid`] for unusable input, [`FitError::Stopped`] when the
+/// control says so.
+pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitError> {
+    control.progress("reading", 0.0);
+    let task = Task::new(request)?;
+    let lines = solve(&task, request.options.closeness, control)?;
+    control.check()?;
+    let umbilics = UmbilicFigures::of(&lines.surface);
+    let borders = BorderFigures::of(&lines.surface, umbilics.mean_difference);
+    let shape = ShapeFigures::of(&lines.surface, &lines.start);
+    Ok(Smooth {
+        borders: borders.in_user_scale(&task),
+        umbilics: umbilics.in_user_scale(&task),
+        shape: shape.in_user_scale(&task),
+        surface: lines.surface.mapped(task.size, &task.middle),
+        start: lines.start.mapped(task.size, &task.middle),
+        given: task.given,
+        levels: task.levels,
+        steps: lines.steps,
+    })
+}
+
+impl At {
+    fn in_user_scale(self, task: &Task) -> At {
+        At {
+            point: Point3::from(task.to_user(&self.point.coords)),
+            ..self
+        }
+    }
+}
+
+impl BorderFigures {
+    fn in_user_scale(self, task: &Task) -> Self {
+        BorderFigures {
+            max_torsion: self.max_torsion.in_user_scale(task),
+            max_skew: self.max_skew.in_user_scale(task),
+            max_off_principal: self.max_off_principal.in_user_scale(task),
+            ..self
+        }
+    }
+}
+
+impl UmbilicFigures {
+    fn in_user_scale(self, task: &Task) -> Self {
+        let curvatures = self.curvatures.iter().map(|k| k.map(|k| k / task.size));
+        UmbilicFigures {
+            least_difference: self.least_difference.in_user_scale(task),
+            mean_difference: self.mean_difference / task.size,
+            curvatures: curvatures.collect(),
+            patches: self.patches,
+        }
+    }
+}
+
+impl ShapeFigures {
+    fn in_user_scale(self, task: &Task) -> Self {
+        ShapeFigures {
+            max_move: self.max_move.in_user_scale(task),
+            max_turn_deg: self.max_turn_deg.in_user_scale(task),
+            ..self
+        }
+    }
+}
