@@ -18,14 +18,17 @@
 //! yards write them. It tells how it read a file and guesses nothing that
 //! changes a number.
 
+pub mod brep;
 pub mod csv;
 pub mod cyclides;
 pub mod fair_curve;
 pub mod fair_points;
 pub mod fair_surface;
+pub mod length_unit;
 pub mod obj;
 pub mod offsets;
 pub mod plates;
 pub mod points_in;
+pub mod step;
 mod strip;
 pub mod svg;

@@ -1,0 +1,105 @@
+use super::*;
+use crate::geometry::{BSplineCurve, Knots};
+
+fn bilinear(corners: [[f64; 3]; 4]) -> BSplineSurface {
+    let knots = vec![0.0, 0.0, 1.0, 1.0];
+    let points = corners.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
+    BSplineSurface::new([1, 1], [knots.clone(), knots], points, None).unwrap()
+}
+
+fn sheet(surface: BSplineSurface) -> Sheet {
+    Sheet {
+        name: "sheet".into(),
+        surface,
+    }
+}
+
+/// Every edge of a shell is run through once in each direction, or once.
+fn assert_oriented(sewn: &Sewn) {
+    for edge in 0..sewn.edges.len() {
+        let uses: Vec<bool> = (sewn.faces.iter())
+            .flat_map(|f| &f.bound)
+            .filter(|u| u.edge == edge)
+            .map(|u| u.forward)
+            .collect();
+        assert!(matches!(uses[..], [_] | [true, false] | [false, true]), "{edge}: {uses:?}");
+    }
+}
+
+/// Every loop is closed.
+fn assert_closed(sewn: &Sewn) {
+    for face in &sewn.faces {
+        let ends: Vec<[usize; 2]> = (face.bound.iter())
+            .map(|u| {
+                let [a, b] = sewn.edges[u.edge].ends;
+                if u.forward { [a, b] } else { [b, a] }
+            })
+            .collect();
+        for (i, [_, end]) in ends.iter().enumerate() {
+            assert_eq!(*end, ends[(i + 1) % ends.len()][0]);
+        }
+    }
+}
+
+#[test]
+fn two_squares_share_an_edge_whatever_their_directions() {
+    let left = bilinear([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);
+    let right = bilinear([[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0]]);
+    for turned in [right.clone(), right.reversed(Axis::U).unwrap(), right.reversed(Axis::V).unwrap()] {
+        let sewn = sew(&[sheet(left.clone()), sheet(turned)]);
+        assert_eq!((sewn.vertices.len(), sewn.edges.len()), (6, 7));
+        assert_eq!(sewn.shells, [[0, 1]]);
+        assert_oriented(&sewn);
+        assert_closed(&sewn);
+    }
+}
+
+#[test]
+fn a_long_side_is_divided_by_its_neighbours() {
+    let long = bilinear([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]]);
+    let short = |x: f64| {
+        bilinear([[x, 1.0, 0.0], [x, 2.0, 0.0], [x + 1.0, 1.0, 0.0], [x + 1.0, 2.0, 0.0]])
+    };
+    let sewn = sew(&[sheet(long), sheet(short(0.0)), sheet(short(1.0))]);
+    assert_eq!(sewn.faces[0].bound.len(), 5);
+    assert_eq!(sewn.shells, [[0, 1, 2]]);
+    assert_eq!((sewn.vertices.len(), sewn.edges.len()), (8, 10));
+    assert_oriented(&sewn);
+    assert_closed(&sewn);
+}
+
+#[test]
+fn a_fan_is_a_face_of_its_own_with_three_edges() {
+    // Quadratic in u; the first span stays in a corner at v = 0.
+    let knots = Knots::new(2, vec![0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 2.0]).unwrap();
+    let along = |points: [[f64; 2]; 5], z: f64| {
+        let points = points.map(|[x, y]| Point3::new(x, y, z)).to_vec();
+        BSplineCurve::from_knots(knots.clone(), points, None).unwrap()
+    };
+    let tip = along([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [1.0, 0.1], [2.0, 0.0]], 0.0);
+    let swept = along([[-1.0, 0.5], [-0.8, 0.2], [0.0, 0.1], [1.0, 0.1], [2.0, 0.0]], 1.0);
+    let surface = crate::geometry::RuledSurface::new(tip, swept).unwrap();
+    let sewn = sew(&[sheet(surface.to_bspline().unwrap())]);
+    let counts: Vec<usize> = sewn.faces.iter().map(|f| f.bound.len()).collect();
+    assert_eq!(counts, [3, 4]);
+    assert_eq!(sewn.shells, [[0, 1]]);
+    assert_oriented(&sewn);
+    assert_closed(&sewn);
+}
+
+#[test]
+fn sheets_apart_are_shells_apart() {
+    let square = |z: f64| {
+        sheet(bilinear([[0.0, 0.0, z], [0.0, 1.0, z], [1.0, 0.0, z], [1.0, 1.0, z]]))
+    };
+    let sewn = sew(&[square(0.0), square(1.0)]);
+    assert_eq!(sewn.shells, [[0], [1]]);
+    assert_eq!(sewn.edges.len(), 8);
+}
+
+#[test]
+fn nothing_gives_nothing() {
+    let point = bilinear([[1.0, 1.0, 1.0]; 4]);
+    assert!(sew(&[sheet(point)]).faces.is_empty());
+    assert!(sew(&[]).shells.is_empty());
+}
