@@ -24,6 +24,7 @@ pub mod cyclides;
 pub mod fair_curve;
 pub mod fair_points;
 pub mod fair_surface;
+pub mod iges;
 pub mod length_unit;
 pub mod obj;
 pub mod offsets;
