@@ -273,6 +273,10 @@ pub enum FileFormat {
     Csv,
     /// The lines plan.
     Svg,
+    /// Surfaces and curves for CAD.
+    Step,
+    /// Surfaces and curves for older CAD.
+    Igs,
 }
 
 /// Which service to ask.

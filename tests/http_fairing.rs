@@ -162,7 +162,13 @@ async fn every_file_of_every_kind_is_written() {
     let service = real_service().await;
     for name in ["half_circle", "frame", "gunnerus_offsets", "bilge_grid"] {
         let place = service.done(&example(name)).await;
-        for (extension, begin) in [("csv", ""), ("svg", "<"), ("json", "{")] {
+        for (extension, begin) in [
+            ("csv", ""),
+            ("svg", "<"),
+            ("json", "{"),
+            ("step", "ISO-10303-21;"),
+            ("igs", ""),
+        ] {
             let answer = service.get(&format!("{place}/result.{extension}")).await;
             assert_eq!(answer.status, StatusCode::OK, "{name}.{extension}");
             let text = String::from_utf8(answer.body.to_vec()).unwrap();

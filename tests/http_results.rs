@@ -9,11 +9,13 @@ use axum::http::{Method, StatusCode};
 use http_support::{idle_service, job, service};
 use serde_json::{Value, json};
 
-const FORMATS: [(&str, &str); 4] = [
+const FORMATS: [(&str, &str); 6] = [
     ("json", "application/json"),
     ("obj", "model/obj"),
     ("csv", "text/csv; charset=utf-8"),
     ("svg", "image/svg+xml"),
+    ("step", "model/step"),
+    ("igs", "model/iges"),
 ];
 
 #[tokio::test]
@@ -148,11 +150,11 @@ async fn accept_chooses_or_is_refused() {
 async fn unknown_formats_name_the_known() {
     let service = service().await;
     let place = service.done(&job("deck")).await;
-    let problem = service.get(&format!("{place}/result.step")).await;
+    let problem = service.get(&format!("{place}/result.dwg")).await;
     let problem = problem.problem(404, "format-not-available");
     assert_eq!(
         problem["detail"],
-        "there is no result.step; there are json, obj, csv, svg"
+        "there is no result.dwg; there are json, obj, csv, svg, step, igs"
     );
 }
 
@@ -239,4 +241,27 @@ async fn diagnostics_of_a_success_and_of_a_job_that_waits() {
         .get(&format!("{}/diagnostics", posted.header("location")))
         .await;
     answer.problem(409, "not-started");
+}
+
+#[tokio::test]
+async fn cad_files_carry_names_units_and_verdict() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let step = service.get(&format!("{place}/result.step")).await;
+    let step = String::from_utf8(step.body.to_vec()).unwrap();
+    assert!(step.starts_with("ISO-10303-21;\n"));
+    for part in [
+        "FILE_DESCRIPTION(('within_limits: ",
+        "SI_UNIT($,.METRE.)",
+        "OPEN_SHELL(",
+        "ADVANCED_FACE('deck \\X2\\2013\\X0\\ keel'",
+        "POLYLINE('ruling 1'",
+    ] {
+        assert!(step.contains(part), "{part}");
+    }
+    let iges = service.get(&format!("{place}/result.igs")).await;
+    let iges = String::from_utf8(iges.body.to_vec()).unwrap();
+    for part in ["within_limits: ", ",6,1HM,", "11Hdeck - keel", "8Hruling 1"] {
+        assert!(iges.contains(part), "{part}");
+    }
 }

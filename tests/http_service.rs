@@ -39,7 +39,10 @@ async fn a_method_tells_options_with_default_unit_and_bounds() {
     }
     assert_eq!(method["input"][0]["name"], "profiles");
     assert_eq!(method["input"][0]["required"], true);
-    assert_eq!(method["formats"], json!(["json", "obj", "csv", "svg"]));
+    assert_eq!(
+        method["formats"],
+        json!(["json", "obj", "csv", "svg", "step", "igs"])
+    );
 }
 
 #[tokio::test]

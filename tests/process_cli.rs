@@ -82,7 +82,7 @@ fn the_demonstration_ends_by_itself_and_leaves_its_files() {
         told.contains("max twist") && told.contains("curl"),
         "{told}"
     );
-    for format in ["json", "svg", "obj", "csv"] {
+    for format in ["json", "svg", "obj", "csv", "step", "igs"] {
         let path = folder
             .path()
             .join("demo-out")

@@ -15,7 +15,7 @@ use thiserror::Error;
 /// The example that is posted.
 const EXAMPLE: &str = "/v1/examples/trawler";
 /// What is fetched of the result.
-const FORMATS: [&str; 4] = ["json", "svg", "obj", "csv"];
+const FORMATS: [&str; 6] = ["json", "svg", "obj", "csv", "step", "igs"];
 /// Asks for a job's end are repeated this often; each waits up to 55 s.
 const MOST_WAITS: usize = 6;
 /// At the end nothing is running that deserves more patience.

@@ -109,6 +109,8 @@ fn format_of(format: FileFormat) -> Format {
         FileFormat::Obj => Format::Obj,
         FileFormat::Csv => Format::Csv,
         FileFormat::Svg => Format::Svg,
+        FileFormat::Step => Format::Step,
+        FileFormat::Igs => Format::Igs,
     }
 }
 

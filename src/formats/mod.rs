@@ -12,6 +12,8 @@
 //! | [`fair_curve`] | corrections of a faired curve (CSV), its plot (SVG) | loftsmen, print |
 //! | [`fair_surface`] | a trimmed mesh (OBJ), corrections (CSV), isophotes (SVG) | CAD, loftsmen, print |
 //! | [`cyclides`] | a net of patches (OBJ), the bill of its arcs (CSV), the flat patterns of its strips (SVG) | CAD, yards, cutting |
+//! | [`step`] | surfaces sewn along shared edges, curves beside them | CAD |
+//! | [`iges`] | surfaces and curves | older CAD |
 //! | [`offsets`] | a faired table of offsets (CSV), its lines plan (SVG) | loftsmen, print |
 //!
 //! One module reads: [`points_in`], lists of points and tables of offsets as

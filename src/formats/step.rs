@@ -17,7 +17,7 @@ mod text;
 
 use super::brep::{Path, SheetModel, Wire, sew};
 use entities::Entities;
-use text::{real, string};
+use text::string;
 
 /// The model as a STEP file.
 #[must_use]

@@ -119,6 +119,8 @@ fn all_routes() -> OpenApiRouter<Api> {
         .routes(routes!(results::result_obj))
         .routes(routes!(results::result_csv))
         .routes(routes!(results::result_svg))
+        .routes(routes!(results::result_step))
+        .routes(routes!(results::result_igs))
         .routes(routes!(results::diagnostics))
         .merge(methods::routes())
         .merge(examples::routes())

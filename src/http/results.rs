@@ -122,6 +122,7 @@ async fn written(job: &Job, format: Format, result: Bytes) -> Result<Bytes, ApiE
             content(
                 (ResultDocument = "application/json"),
                 (String = "model/obj"), (String = "text/csv"), (String = "image/svg+xml"),
+                (String = "model/step"), (String = "model/iges"),
             ),
             headers(("ETag" = String, description = "SHA-256 of the bytes"))),
         (status = 206, description = "The bytes that `Range` asked for",
@@ -177,7 +178,7 @@ async fn file(
             header::CONTENT_SECURITY_POLICY,
             "default-src 'none'; style-src 'unsafe-inline'; sandbox",
         ),
-        Format::Json | Format::Obj | Format::Csv => response,
+        Format::Json | Format::Obj | Format::Csv | Format::Step | Format::Igs => response,
     })
 }
 
@@ -229,6 +230,10 @@ result_files! {
         "text/csv", "The table of rulings";
     result_svg, "/v1/jobs/{id}/result.svg", "get_result_svg", Format::Svg, String,
         "image/svg+xml", "The lines plan with the rulings coloured by twist";
+    result_step, "/v1/jobs/{id}/result.step", "get_result_step", Format::Step, String,
+        "model/step", "The surfaces for CAD, sewn along shared edges, with the curves beside them";
+    result_igs, "/v1/jobs/{id}/result.igs", "get_result_igs", Format::Igs, String,
+        "model/iges", "The surfaces and curves for older CAD";
 }
 
 /// How a job went

@@ -79,7 +79,11 @@ pub(in crate::formats) fn sew(sheets: &[Sheet]) -> Sewn {
     let weld = WELD * size;
     let patches: Vec<(&str, BSplineSurface)> = sheets
         .iter()
-        .flat_map(|s| patches(&s.surface).into_iter().map(|p| (s.name.as_str(), p)))
+        .flat_map(|s| {
+            patches(&s.surface)
+                .into_iter()
+                .map(|p| (s.name.as_str(), p))
+        })
         .collect();
     let mut corners = Vertices::new(weld);
     let sides: Vec<Vec<BSplineCurve>> = patches.iter().map(|(_, p)| sides(p, weld)).collect();
@@ -185,9 +189,7 @@ impl Vertices {
     }
 
     fn known(&self, point: &Point3<f64>, cell: [i64; 3]) -> Option<usize> {
-        let near = (0..27).map(|k| {
-            [k % 3, k / 3 % 3, k / 9].map(|d| d - 1)
-        });
+        let near = (0..27).map(|k| [k % 3, k / 3 % 3, k / 9].map(|d| d - 1));
         let cells = near.map(|d: [i64; 3]| [0, 1, 2].map(|i| cell[i].saturating_add(d[i])));
         cells
             .filter_map(|cell| self.cells.get(&cell))

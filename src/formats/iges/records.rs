@@ -176,7 +176,12 @@ mod tests {
 
     #[test]
     fn reals_read_back() {
-        for (x, text) in [(0.0, "0."), (2.0, "2."), (1e-7, "1.D-7"), (-2.5e13, "-2.5D13")] {
+        for (x, text) in [
+            (0.0, "0."),
+            (2.0, "2."),
+            (1e-7, "1.D-7"),
+            (-2.5e13, "-2.5D13"),
+        ] {
             assert_eq!(real(x), text);
         }
     }

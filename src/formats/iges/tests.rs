@@ -9,7 +9,8 @@ fn model() -> SheetModel {
     let surface = BSplineSurface::new([1, 1], [knots.clone(), knots], points, None);
     SheetModel {
         title: "a plate".into(),
-        description: "a description that is longer than one line of this old format is, by far".into(),
+        description: "a description that is longer than one line of this old format is, by far"
+            .into(),
         units: LengthUnit::Foot,
         sheets: vec![Sheet {
             name: "deck – chine".into(),
@@ -51,13 +52,20 @@ fn a_surface_runs_through_u_first() {
 fn the_directory_points_to_the_parameters() {
     let text = write(&model());
     let lines: Vec<&str> = text.lines().collect();
-    let of = |letter: char| lines.iter().filter(move |l| l.as_bytes()[72] as char == letter);
+    let of = |letter: char| {
+        lines
+            .iter()
+            .filter(move |l| l.as_bytes()[72] as char == letter)
+    };
     let parameters: Vec<&&str> = of('P').collect();
     let mut kinds = Vec::new();
     for entry in of('D').collect::<Vec<_>>().chunks(2) {
         let kind = entry[0][..8].trim();
         let first: usize = entry[0][8..16].trim().parse().unwrap();
-        assert!(parameters[first - 1].starts_with(&format!("{kind},")), "{kind}");
+        assert!(
+            parameters[first - 1].starts_with(&format!("{kind},")),
+            "{kind}"
+        );
         let back = parameters[first - 1][64..72].trim();
         assert_eq!(back, entry[0][73..].trim());
         kinds.push(kind.to_owned());

@@ -36,24 +36,39 @@ impl Entities {
         self.add(format_args!(
             "APPLICATION_PROTOCOL_DEFINITION('international standard','automotive_design',2000,#{application})"
         ));
-        let context = self.add(format_args!("PRODUCT_CONTEXT('',#{application},'mechanical')"));
+        let context = self.add(format_args!(
+            "PRODUCT_CONTEXT('',#{application},'mechanical')"
+        ));
         let (title, description) = (string(title), string(description));
-        let product = self.add(format_args!("PRODUCT({title},{title},{description},(#{context}))"));
-        self.add(format_args!("PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#{product}))"));
-        let formation = self.add(format_args!("PRODUCT_DEFINITION_FORMATION('','',#{product})"));
+        let product = self.add(format_args!(
+            "PRODUCT({title},{title},{description},(#{context}))"
+        ));
+        self.add(format_args!(
+            "PRODUCT_RELATED_PRODUCT_CATEGORY('part',$,(#{product}))"
+        ));
+        let formation = self.add(format_args!(
+            "PRODUCT_DEFINITION_FORMATION('','',#{product})"
+        ));
         let design = self.add(format_args!(
             "PRODUCT_DEFINITION_CONTEXT('part definition',#{application},'design')"
         ));
-        let definition =
-            self.add(format_args!("PRODUCT_DEFINITION('design','',#{formation},#{design})"));
-        self.add(format_args!("PRODUCT_DEFINITION_SHAPE('','',#{definition})"))
+        let definition = self.add(format_args!(
+            "PRODUCT_DEFINITION('design','',#{formation},#{design})"
+        ));
+        self.add(format_args!(
+            "PRODUCT_DEFINITION_SHAPE('','',#{definition})"
+        ))
     }
 
     /// Units, and the distance within which places are one.
     pub fn context(&mut self, units: LengthUnit, uncertainty: f64) -> usize {
         let length = self.length_unit(units);
-        let angle = self.add(format_args!("(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))"));
-        let solid = self.add(format_args!("(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())"));
+        let angle = self.add(format_args!(
+            "(NAMED_UNIT(*)PLANE_ANGLE_UNIT()SI_UNIT($,.RADIAN.))"
+        ));
+        let solid = self.add(format_args!(
+            "(NAMED_UNIT(*)SI_UNIT($,.STERADIAN.)SOLID_ANGLE_UNIT())"
+        ));
         let uncertainty = self.add(format_args!(
             "UNCERTAINTY_MEASURE_WITH_UNIT(LENGTH_MEASURE({}),#{length},'distance_accuracy_value','')",
             real(uncertainty)
@@ -72,7 +87,9 @@ impl Entities {
             LengthUnit::Inch => ("$", Some("INCH")),
             LengthUnit::Foot => ("$", Some("FOOT")),
         };
-        let base = self.add(format_args!("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT({si},.METRE.))"));
+        let base = self.add(format_args!(
+            "(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT({si},.METRE.))"
+        ));
         let Some(name) = foreign else { return base };
         let size = self.add(format_args!("DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.)"));
         let factor = self.add(format_args!(
@@ -94,11 +111,17 @@ impl Entities {
 
     /// A point.
     pub fn point(&mut self, p: &Point3<f64>) -> usize {
-        self.add(format_args!("CARTESIAN_POINT('',{})", reals(p.coords.as_slice())))
+        self.add(format_args!(
+            "CARTESIAN_POINT('',{})",
+            reals(p.coords.as_slice())
+        ))
     }
 
     fn points(&mut self, points: &[Point3<f64>]) -> Vec<String> {
-        points.iter().map(|p| format!("#{}", self.point(p))).collect()
+        points
+            .iter()
+            .map(|p| format!("#{}", self.point(p)))
+            .collect()
     }
 
     /// A B-spline curve.
@@ -133,7 +156,9 @@ impl Entities {
         let knots = format!("{u_counts},{v_counts},{u_values},{v_values},.UNSPECIFIED.");
         let name = string(name);
         match surface.weights() {
-            None => self.add(format_args!("B_SPLINE_SURFACE_WITH_KNOTS({name},{shape},{knots})")),
+            None => self.add(format_args!(
+                "B_SPLINE_SURFACE_WITH_KNOTS({name},{shape},{knots})"
+            )),
             Some(weights) => self.add(format_args!(
                 "(BOUNDED_SURFACE()B_SPLINE_SURFACE({shape})\
                  B_SPLINE_SURFACE_WITH_KNOTS({knots})GEOMETRIC_REPRESENTATION_ITEM()\
@@ -180,7 +205,10 @@ impl Entities {
                 format!("#{id}")
             })
             .collect();
-        let bound = self.add(format_args!("EDGE_LOOP('',{})", bracketed(uses.into_iter())));
+        let bound = self.add(format_args!(
+            "EDGE_LOOP('',{})",
+            bracketed(uses.into_iter())
+        ));
         let bound = self.add(format_args!("FACE_OUTER_BOUND('',#{bound},.T.)"));
         self.add(format_args!(
             "ADVANCED_FACE({},(#{bound}),#{surface},{})",

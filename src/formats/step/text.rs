@@ -6,7 +6,11 @@ use std::fmt::Write as _;
 /// that the standard asks for.
 pub(super) fn real(x: f64) -> String {
     let plain = x == 0.0 || (1e-4..1e12).contains(&x.abs());
-    let text = if plain { format!("{x}") } else { format!("{x:E}") };
+    let text = if plain {
+        format!("{x}")
+    } else {
+        format!("{x:E}")
+    };
     match text.split_once('E') {
         _ if text.contains('.') => text,
         Some((mantissa, exponent)) => format!("{mantissa}.E{exponent}"),
@@ -81,7 +85,10 @@ mod tests {
 
     #[test]
     fn strings_are_escaped() {
-        assert_eq!(string("deck – 'keel' \\"), r"'deck \X2\2013\X0\ ''keel'' \\'");
+        assert_eq!(
+            string("deck – 'keel' \\"),
+            r"'deck \X2\2013\X0\ ''keel'' \\'"
+        );
         assert_eq!(string("ä"), r"'\X2\00E4\X0\'");
         assert_eq!(string("a\n𝄞b"), r"'a\X2\000AD834DD1E\X0\b'");
     }

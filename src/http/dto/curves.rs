@@ -2,7 +2,7 @@
 
 use super::job::Units;
 use crate::geometry::{BSplineCurve, BSplineSurface};
-use crate::http::problem::FieldError;
+use crate::http::problem::{ApiError, FieldError};
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 use utoipa::openapi::schema::{ArrayBuilder, ObjectBuilder, Schema, Type};
@@ -168,6 +168,21 @@ impl NamedCurve {
             weights,
         }
     }
+
+    /// The curve itself.
+    ///
+    /// # Errors
+    /// A stored curve that is none, a fault of ours.
+    pub(super) fn spline(&self) -> Result<BSplineCurve, ApiError> {
+        let points = self.control_points.iter().map(|p| (*p).into()).collect();
+        BSplineCurve::new(
+            self.degree,
+            self.knots.clone(),
+            points,
+            self.weights.clone(),
+        )
+        .map_err(|e| ApiError::internal(&e))
+    }
 }
 
 /// A named tensor-product B-spline surface of a result.
@@ -215,6 +230,22 @@ impl Surface {
                 .weights()
                 .map(|w| w.chunks(columns).map(<[f64]>::to_vec).collect()),
         }
+    }
+
+    /// The surface itself.
+    ///
+    /// # Errors
+    /// A stored surface that is none, a fault of ours.
+    pub(super) fn tensor(&self) -> Result<BSplineSurface, ApiError> {
+        let points = self.control_points.iter().flatten();
+        let weights = self.weights.as_ref().map(|rows| rows.concat());
+        BSplineSurface::new(
+            self.degree,
+            self.knots.clone(),
+            points.map(|p| (*p).into()).collect(),
+            weights,
+        )
+        .map_err(|e| ApiError::internal(&e))
     }
 }
 

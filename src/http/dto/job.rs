@@ -199,6 +199,15 @@ pub enum VerdictWord {
     OutsideLimits,
 }
 
+impl fmt::Display for VerdictWord {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            VerdictWord::WithinLimits => "within_limits",
+            VerdictWord::OutsideLimits => "outside_limits",
+        })
+    }
+}
+
 impl From<jobs::Verdict> for VerdictWord {
     fn from(verdict: jobs::Verdict) -> Self {
         match verdict {

@@ -2,6 +2,7 @@
 //! their own documentation. The OpenAPI document, the checks of a request and
 //! the JSON itself all come from these types.
 
+mod cad;
 pub mod curves;
 pub mod diagnostics;
 pub mod fairing;

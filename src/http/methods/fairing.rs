@@ -80,7 +80,14 @@ impl Method for Fairing {
     }
 
     fn formats(&self) -> &'static [Format] {
-        &[Format::Json, Format::Csv, Format::Svg, Format::Obj]
+        &[
+            Format::Json,
+            Format::Csv,
+            Format::Svg,
+            Format::Obj,
+            Format::Step,
+            Format::Igs,
+        ]
     }
 
     fn rule(&self) -> Result<&'static Rule, &'static String> {

@@ -11,11 +11,22 @@ pub enum Format {
     Csv,
     /// A drawing.
     Svg,
+    /// Surfaces and curves for CAD, sewn: ISO 10303-21, AP 214.
+    Step,
+    /// Surfaces and curves for older CAD: IGES 5.3.
+    Igs,
 }
 
 impl Format {
     /// All forms.
-    pub const ALL: [Format; 4] = [Format::Json, Format::Obj, Format::Csv, Format::Svg];
+    pub const ALL: [Format; 6] = [
+        Format::Json,
+        Format::Obj,
+        Format::Csv,
+        Format::Svg,
+        Format::Step,
+        Format::Igs,
+    ];
 
     /// The file name's ending.
     #[must_use]
@@ -25,6 +36,8 @@ impl Format {
             Format::Obj => "obj",
             Format::Csv => "csv",
             Format::Svg => "svg",
+            Format::Step => "step",
+            Format::Igs => "igs",
         }
     }
 
@@ -36,6 +49,8 @@ impl Format {
             Format::Obj => "model/obj",
             Format::Csv => "text/csv; charset=utf-8",
             Format::Svg => "image/svg+xml",
+            Format::Step => "model/step",
+            Format::Igs => "model/iges",
         }
     }
 

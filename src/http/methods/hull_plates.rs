@@ -73,7 +73,14 @@ impl Method for HullPlates {
     }
 
     fn formats(&self) -> &'static [Format] {
-        &[Format::Json, Format::Obj, Format::Csv, Format::Svg]
+        &[
+            Format::Json,
+            Format::Obj,
+            Format::Csv,
+            Format::Svg,
+            Format::Step,
+            Format::Igs,
+        ]
     }
 
     fn rule(&self) -> Result<&'static Rule, &'static String> {
@@ -92,6 +99,7 @@ impl Method for HullPlates {
             Format::Obj => Ok(obj::write(&drawing)),
             Format::Csv => Ok(csv::ruling_table(&drawing)),
             Format::Svg => Ok(svg::lines_plan(&drawing)),
+            Format::Step | Format::Igs => document.write_cad(format),
             Format::Json => Err(ApiError::internal(&"JSON is what is stored")),
         }
     }

@@ -22,7 +22,10 @@ fn assert_oriented(sewn: &Sewn) {
             .filter(|u| u.edge == edge)
             .map(|u| u.forward)
             .collect();
-        assert!(matches!(uses[..], [_] | [true, false] | [false, true]), "{edge}: {uses:?}");
+        assert!(
+            matches!(uses[..], [_] | [true, false] | [false, true]),
+            "{edge}: {uses:?}"
+        );
     }
 }
 
@@ -43,9 +46,23 @@ fn assert_closed(sewn: &Sewn) {
 
 #[test]
 fn two_squares_share_an_edge_whatever_their_directions() {
-    let left = bilinear([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0]]);
-    let right = bilinear([[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0]]);
-    for turned in [right.clone(), right.reversed(Axis::U).unwrap(), right.reversed(Axis::V).unwrap()] {
+    let left = bilinear([
+        [0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+    ]);
+    let right = bilinear([
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [2.0, 0.0, 1.0],
+        [2.0, 1.0, 1.0],
+    ]);
+    for turned in [
+        right.clone(),
+        right.reversed(Axis::U).unwrap(),
+        right.reversed(Axis::V).unwrap(),
+    ] {
         let sewn = sew(&[sheet(left.clone()), sheet(turned)]);
         assert_eq!((sewn.vertices.len(), sewn.edges.len()), (6, 7));
         assert_eq!(sewn.shells, [[0, 1]]);
@@ -56,9 +73,19 @@ fn two_squares_share_an_edge_whatever_their_directions() {
 
 #[test]
 fn a_long_side_is_divided_by_its_neighbours() {
-    let long = bilinear([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]]);
+    let long = bilinear([
+        [0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [2.0, 0.0, 0.0],
+        [2.0, 1.0, 0.0],
+    ]);
     let short = |x: f64| {
-        bilinear([[x, 1.0, 0.0], [x, 2.0, 0.0], [x + 1.0, 1.0, 0.0], [x + 1.0, 2.0, 0.0]])
+        bilinear([
+            [x, 1.0, 0.0],
+            [x, 2.0, 0.0],
+            [x + 1.0, 1.0, 0.0],
+            [x + 1.0, 2.0, 0.0],
+        ])
     };
     let sewn = sew(&[sheet(long), sheet(short(0.0)), sheet(short(1.0))]);
     assert_eq!(sewn.faces[0].bound.len(), 5);
@@ -76,8 +103,14 @@ fn a_fan_is_a_face_of_its_own_with_three_edges() {
         let points = points.map(|[x, y]| Point3::new(x, y, z)).to_vec();
         BSplineCurve::from_knots(knots.clone(), points, None).unwrap()
     };
-    let tip = along([[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [1.0, 0.1], [2.0, 0.0]], 0.0);
-    let swept = along([[-1.0, 0.5], [-0.8, 0.2], [0.0, 0.1], [1.0, 0.1], [2.0, 0.0]], 1.0);
+    let tip = along(
+        [[0.0, 0.0], [0.0, 0.0], [0.0, 0.0], [1.0, 0.1], [2.0, 0.0]],
+        0.0,
+    );
+    let swept = along(
+        [[-1.0, 0.5], [-0.8, 0.2], [0.0, 0.1], [1.0, 0.1], [2.0, 0.0]],
+        1.0,
+    );
     let surface = crate::geometry::RuledSurface::new(tip, swept).unwrap();
     let sewn = sew(&[sheet(surface.to_bspline().unwrap())]);
     let counts: Vec<usize> = sewn.faces.iter().map(|f| f.bound.len()).collect();
@@ -90,7 +123,12 @@ fn a_fan_is_a_face_of_its_own_with_three_edges() {
 #[test]
 fn sheets_apart_are_shells_apart() {
     let square = |z: f64| {
-        sheet(bilinear([[0.0, 0.0, z], [0.0, 1.0, z], [1.0, 0.0, z], [1.0, 1.0, z]]))
+        sheet(bilinear([
+            [0.0, 0.0, z],
+            [0.0, 1.0, z],
+            [1.0, 0.0, z],
+            [1.0, 1.0, z],
+        ]))
     };
     let sewn = sew(&[square(0.0), square(1.0)]);
     assert_eq!(sewn.shells, [[0], [1]]);

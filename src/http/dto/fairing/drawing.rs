@@ -3,12 +3,13 @@
 use super::FairingResult;
 use super::result::{FairedKind, MoveResult};
 use super::table::CellWord;
+use crate::formats::brep::SheetModel;
 use crate::formats::fair_curve::{self, FairCurveDrawing, Tooth};
 use crate::formats::fair_points::FairPoint;
 use crate::formats::fair_surface::{self, FairSurfaceDrawing, Isophotes};
 use crate::formats::offsets::{self, Cell, OffsetsDrawing, Orientation};
-use crate::geometry::{BSplineCurve, BSplineSurface};
-use crate::http::dto::curves::{NamedCurve, Surface};
+use crate::geometry::BSplineCurve;
+use crate::http::dto::cad;
 use crate::http::dto::job::VerdictWord;
 use crate::http::methods::Format;
 use crate::http::problem::{ApiError, Code};
@@ -33,8 +34,9 @@ impl FairingResult {
     pub fn write(&self, format: Format) -> Result<String, ApiError> {
         match (self.method_specific.kind, format) {
             (_, Format::Json) => Err(ApiError::internal(&"JSON is what is stored")),
+            (_, Format::Step | Format::Igs) => cad::write(&self.sheet_model()?, format),
             (FairedKind::Curve, Format::Obj) => {
-                let detail = "a curve has no mesh; there are json, csv, svg";
+                let detail = "a curve has no mesh; there are json, csv, svg, step, igs";
                 Err(ApiError::new(Code::FormatNotAvailable, detail))
             }
             (FairedKind::Curve, Format::Csv) => Ok(fair_curve::correction_table(&self.curve()?)),
@@ -51,15 +53,18 @@ impl FairingResult {
         }
     }
 
-    fn title(&self) -> String {
-        self.label.clone().unwrap_or_else(|| UNTITLED.to_owned())
+    fn sheet_model(&self) -> Result<SheetModel, ApiError> {
+        Ok(SheetModel {
+            title: self.title(),
+            description: format!("{}; surfaces reach beyond their points", self.verdict),
+            units: self.units.into(),
+            sheets: cad::sheets(&self.surfaces)?,
+            wires: vec![cad::wires("curves", &self.curves)?],
+        })
     }
 
-    fn verdict_word(&self) -> String {
-        match self.verdict {
-            VerdictWord::WithinLimits => "within_limits".to_owned(),
-            VerdictWord::OutsideLimits => "outside_limits".to_owned(),
-        }
+    fn title(&self) -> String {
+        self.label.clone().unwrap_or_else(|| UNTITLED.to_owned())
     }
 
     fn points(&self) -> Vec<FairPoint> {
@@ -85,7 +90,7 @@ impl FairingResult {
             title: self.title(),
             units: self.units.to_string(),
             dimension: self.method_specific.dimension,
-            curve: spline(curve)?,
+            curve: curve.spline()?,
             before: None,
             points: self.points(),
             comb: comb
@@ -96,7 +101,7 @@ impl FairingResult {
                     curvature: t.curvature,
                 })
                 .collect(),
-            verdict: self.verdict_word(),
+            verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
         })
     }
@@ -111,7 +116,7 @@ impl FairingResult {
         Ok(FairSurfaceDrawing {
             title: self.title(),
             units: self.units.to_string(),
-            surface: tensor(surface)?,
+            surface: surface.tensor()?,
             outer,
             holes,
             points: self.points(),
@@ -122,7 +127,7 @@ impl FairingResult {
                     .map(|row| row.iter().map(|n| n.map(angle)).collect())
                     .collect(),
             }),
-            verdict: self.verdict_word(),
+            verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
         })
     }
@@ -153,7 +158,7 @@ impl FairingResult {
             station_curves: self.family("station")?,
             waterline_curves: self.family("waterline")?,
             buttock_curves: self.family("buttock")?,
-            verdict: self.verdict_word(),
+            verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
         })
     }
@@ -168,7 +173,7 @@ impl FairingResult {
         };
         let own = self.curves.iter().filter(|c| c.role == role);
         // Adding zero makes −0 plain.
-        own.map(|c| Ok((c.control_points[0].0[axis] + 0.0, spline(c)?)))
+        own.map(|c| Ok((c.control_points[0].0[axis] + 0.0, c.spline()?)))
             .collect()
     }
 }
@@ -176,22 +181,4 @@ impl FairingResult {
 /// The angle whose cosine is n·l, degrees.
 fn angle(cosine: f64) -> f64 {
     cosine.clamp(-1.0, 1.0).acos().to_degrees()
-}
-
-fn spline(c: &NamedCurve) -> Result<BSplineCurve, ApiError> {
-    let points = c.control_points.iter().map(|p| (*p).into()).collect();
-    BSplineCurve::new(c.degree, c.knots.clone(), points, c.weights.clone())
-        .map_err(|e| ApiError::internal(&e))
-}
-
-fn tensor(s: &Surface) -> Result<BSplineSurface, ApiError> {
-    let points = s.control_points.iter().flatten();
-    let weights = s.weights.as_ref().map(|rows| rows.concat());
-    BSplineSurface::new(
-        s.degree,
-        s.knots.clone(),
-        points.map(|p| (*p).into()).collect(),
-        weights,
-    )
-    .map_err(|e| ApiError::internal(&e))
 }
