@@ -98,20 +98,21 @@ impl CurveIndex {
     /// is as certain as without.
     #[must_use]
     pub fn closest_near(&self, query: &Point3<f64>, hint: f64) -> Closest {
-        self.search(query, Some(self.leaf_at(hint)))
+        self.search(query, Some(hint))
     }
 
-    fn search(&self, query: &Point3<f64>, first: Option<usize>) -> Closest {
+    fn search(&self, query: &Point3<f64>, hint: Option<f64>) -> Closest {
         let mut search = Search::new(&self.curve, *query, self.resolution);
+        let first = hint.map(|u| self.leaf_at(u));
         if let Some(leaf) = first {
-            search.leaf(&self.leaves[leaf]);
+            search.leaf(&self.leaves[leaf], hint);
         }
         self.tree.visit(query, |leaf, bound| {
             if search.rules_out(bound) {
                 false
             } else {
                 if let Some(leaf) = leaf.filter(|leaf| first != Some(*leaf)) {
-                    search.leaf(&self.leaves[leaf]);
+                    search.leaf(&self.leaves[leaf], None);
                 }
                 true
             }

@@ -20,6 +20,11 @@ pub struct BasisJet<const ROWS: usize> {
 }
 
 impl<const ROWS: usize> BasisJet<ROWS> {
+    /// From rows found otherwise than by the recurrence.
+    pub(super) fn of_rows(first: usize, count: usize, rows: [[f64; MAX_DEGREE + 1]; ROWS]) -> Self {
+        BasisJet { first, count, rows }
+    }
+
     /// The `order`-th derivatives of the acting functions (0: their values).
     ///
     /// # Panics

@@ -6,9 +6,10 @@
 //! most `degree` times: every curve is continuous. Parameters outside the
 //! domain are moved to its nearer end, never extrapolated.
 //!
-//! Evaluation is de Boor's triangle throughout (module `deboor`): derivatives come
-//! from differences of control points, so that a run of equal control points
-//! has derivatives that are exactly zero, as the apex of a cone needs.
+//! Curves and surfaces are evaluated by de Boor's triangle (module `deboor`):
+//! derivatives come from differences of control points, so that a run of equal
+//! control points has derivatives that are exactly zero, as the apex of a cone
+//! needs. Methods that ask at very many parameters take [`BasisTable`].
 //!
 //! Sources: de Boor, *A Practical Guide to Splines* (1978); Piegl & Tiller,
 //! *The NURBS Book* (2nd ed. 1997), cited by algorithm number.
@@ -23,6 +24,7 @@ mod interpolate;
 mod join;
 mod kinks;
 mod knots;
+mod pieces;
 mod refine;
 mod rows;
 mod surface;
@@ -37,6 +39,7 @@ pub use interpolate::{
 };
 pub use join::join_c0;
 pub use knots::{Knots, MAX_DEGREE};
+pub use pieces::{BasisTable, Pieces};
 pub use rows::surface_from_rows;
 pub use surface::{Axis, BSplineSurface, SurfaceJet};
 pub use surface_forms::interpolate_grid;

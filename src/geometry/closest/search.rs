@@ -56,8 +56,9 @@ impl<'a> Search<'a> {
         out
     }
 
-    /// Searches one leaf, halving it as far as needed.
-    pub fn leaf(&mut self, leaf: &Leaf) {
+    /// Searches one leaf, halving it as far as needed; `near`: a parameter from
+    /// which Newton's method may begin, if it lies in the leaf.
+    pub fn leaf(&mut self, leaf: &Leaf, near: Option<f64>) {
         // Grows only where halving is needed, which is rare.
         let mut waiting: Vec<Part> = Vec::new();
         let mut next = Some(Part {
@@ -65,7 +66,7 @@ impl<'a> Search<'a> {
             ends: leaf.ends,
         });
         while let Some(part) = next {
-            match self.halve(leaf, part) {
+            match self.halve(leaf, part, near) {
                 Some([a, b]) => {
                     waiting.push(b);
                     next = Some(a);
@@ -76,7 +77,7 @@ impl<'a> Search<'a> {
     }
 
     /// Settles a part, or gives its halves, nearer first.
-    fn halve(&mut self, leaf: &Leaf, part: Part) -> Option<[Part; 2]> {
+    fn halve(&mut self, leaf: &Leaf, part: Part, near: Option<f64>) -> Option<[Part; 2]> {
         let [a, b] = part.ends;
         let h = part.u[1] - part.u[0];
         let bulge = leaf.bulge(h);
@@ -89,7 +90,8 @@ impl<'a> Search<'a> {
             return None;
         }
         let slowest = (chord.norm() / h - 0.5 * leaf.second * h).max(0.0);
-        let start = part.u[0] + share * h;
+        let inside = near.filter(|u| *u >= part.u[0] && *u <= part.u[1]);
+        let start = inside.unwrap_or(part.u[0] + share * h);
         if slowest * slowest > far * leaf.second {
             self.newton(leaf, part.u, start);
             return None;
