@@ -3,6 +3,7 @@
 
 use super::outcome::{CombTooth, Fairness};
 use crate::geometry::BSplineCurve;
+use crate::geometry::bspline::{BasisTable, Pieces};
 use crate::numerics::GaussLegendre;
 use nalgebra::{Point3, Vector3};
 
@@ -13,7 +14,7 @@ const SAMPLES: usize = 16;
 /// Samples at least.
 const LEAST_SAMPLES: usize = 400;
 /// Samples at most: beyond, a span gets fewer.
-const MOST_SAMPLES: usize = 40_000;
+const MOST_SAMPLES: usize = 16_000;
 /// Extrema count if the curvature turns back by this share of its range (or
 /// of a twentieth of its greatest amount, if that is more).
 const PROMINENT: f64 = 0.03;
@@ -39,19 +40,28 @@ struct Local {
 /// A curve to be measured; `plane` is the unit normal of its plane, if any,
 /// about which the curvature is positive.
 pub(super) struct Gauge<'a> {
-    curve: &'a BSplineCurve,
+    domain: [f64; 2],
+    pieces: Pieces<'a, 3>,
     plane: Option<Vector3<f64>>,
     closed: bool,
     spans: Vec<[f64; 2]>,
 }
 
 impl<'a> Gauge<'a> {
-    /// Prepares a curve; of a `closed` one extrema are counted around.
-    pub(super) fn new(curve: &'a BSplineCurve, plane: Option<Vector3<f64>>, closed: bool) -> Self {
+    /// Prepares a polynomial curve with the table of its basis; of a `closed`
+    /// one extrema are counted around.
+    pub(super) fn new(
+        curve: &BSplineCurve,
+        table: &'a BasisTable,
+        plane: Option<Vector3<f64>>,
+        closed: bool,
+    ) -> Self {
         let breaks = curve.knot_vector().breakpoints();
         let spans = breaks.windows(2).map(|w| [w[0], w[1]]).collect();
+        let points = curve.control_points();
         Gauge {
-            curve,
+            domain: curve.domain(),
+            pieces: table.pieces(|k| points[k].coords),
             plane,
             closed,
             spans,
@@ -59,16 +69,15 @@ impl<'a> Gauge<'a> {
     }
 
     fn at(&self, u: f64) -> Local {
-        let jet = self.curve.derivatives(u);
-        let d3 = self.curve.derivative3(u);
-        let q = jet.d1.norm_squared().max(f64::MIN_POSITIVE);
+        let [point, d1, d2, d3] = self.pieces.jet::<4>(u);
+        let q = d1.norm_squared().max(f64::MIN_POSITIVE);
         let speed = q.sqrt();
-        let tangent = jet.d1 / speed;
-        let a = jet.d1.dot(&jet.d2) / q;
-        let bend = (jet.d2 - jet.d1 * a) / q;
-        let m = d3 - jet.d2 * (3.0 * a);
+        let tangent = d1 / speed;
+        let a = d1.dot(&d2) / q;
+        let bend = (d2 - d1 * a) / q;
+        let m = d3 - d2 * (3.0 * a);
         let change = (m - tangent * tangent.dot(&m)) / (q * speed);
-        let binormal = jet.d1.cross(&jet.d2);
+        let binormal = d1.cross(&d2);
         let curvature = match self.plane {
             Some(normal) => normal.dot(&tangent.cross(&bend)),
             None => bend.norm(),
@@ -81,7 +90,7 @@ impl<'a> Gauge<'a> {
             0.0
         };
         Local {
-            point: jet.point,
+            point: point.into(),
             speed,
             tangent,
             bend,
@@ -158,7 +167,7 @@ impl<'a> Gauge<'a> {
     /// The comb: teeth at even parameters (near arc length), span ends
     /// included at both ends of the curve.
     pub(super) fn comb(&self) -> Vec<CombTooth> {
-        let [a, b] = self.curve.domain();
+        let [a, b] = self.domain;
         let rule = GaussLegendre::new(NODES);
         let mut s = 0.0;
         let mut before = a;

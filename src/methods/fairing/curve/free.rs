@@ -25,6 +25,9 @@ const MOST_ROUNDS: usize = 12;
 const STEPS: usize = 4;
 /// A step that lowers the cost by less than this share ends a round.
 const ENOUGH: f64 = 1e-4;
+/// Points from whose double on not all are asked at first: with so many the
+/// first rounds come as near to the shape as the last ones need.
+const FEW: usize = 2048;
 /// Longest step of a foot, as a share of the domain.
 const REACH: f64 = 0.05;
 /// Curvature times length up to which a bend is gentle: that of four full
@@ -48,6 +51,9 @@ pub(super) fn first_shape<const D: usize>(
     springs: &Springs<D>,
     quadratic: Option<Quadratic>,
 ) -> Option<Shape<D>> {
+    let every = (springs.points.len() / FEW).max(1);
+    let few = (every > 1 && springs.held.is_empty()).then(|| springs.thinned(every));
+    let springs = few.as_ref().unwrap_or(springs);
     let gram = springs.gram(&space, &vec![Vector::zeros(); space.unknowns()]);
     let model = Offsets::linear(&space, &FIRST_ENERGY, &gram);
     let (x, ..) = model.solve(model.choose(None).stiffness)?;
@@ -77,7 +83,8 @@ fn shape_of<const D: usize>(
     shape
 }
 
-/// Fits `shape` to its springs; the stiffness comes from the points.
+/// Fits `shape` to its springs; the stiffness comes from the points. Of very
+/// many points some are asked first, and all of them only for the last rounds.
 ///
 /// # Errors
 /// When the control says stop.
@@ -87,14 +94,34 @@ pub(super) fn settle<const D: usize>(
     holds: &mut Holds<D>,
     control: &dyn Control,
 ) -> Result<Choice, Stop> {
+    let every = springs.points.len() / FEW;
+    if every < 2 || !springs.held.is_empty() {
+        return rounds(shape, springs, holds, (None, control));
+    }
+    let mut few = springs.thinned(every);
+    let first = rounds(shape, &mut few, holds, (None, control))?;
+    // The same curve against as many springs the more.
+    let near = first.likeliest + (every as f64).ln();
+    rounds(shape, springs, holds, (Some(near), control))
+}
+
+/// Rounds of feet, stiffness and shape until nothing changes; `near`: ln λ of
+/// the likeliest on almost the same curve.
+fn rounds<const D: usize>(
+    shape: &mut Shape<D>,
+    springs: &mut Springs<D>,
+    holds: &mut Holds<D>,
+    (near, control): (Option<f64>, &dyn Control),
+) -> Result<Choice, Stop> {
     let [a, b] = shape.space.domain();
     let reach = REACH * (b - a);
+    let least = if near.is_some() { 1 } else { 2 };
     let mut choice: Option<Choice> = None;
     for round in 0..MOST_ROUNDS {
         control.check()?;
         springs.refresh(&shape.space, &shape.x, reach);
         let gram = springs.gram(&shape.space, &shape.x);
-        let near = choice.map(|c| c.likeliest);
+        let near = choice.map(|c| c.likeliest).or(near);
         let offsets = Offsets::about(&shape.space, &shape.energy, &gram, &shape.x);
         let next = if gram.count > 0 {
             offsets.choose(near)
@@ -108,7 +135,7 @@ pub(super) fn settle<const D: usize>(
         let change = |c: Choice| (c.stiffness.ln() - next.stiffness.ln()).abs();
         let steady = choice.is_some_and(|c| change(c) < SETTLED);
         choice = Some(next);
-        if steady && round >= 2 && unheld <= HELD {
+        if steady && round >= least && unheld <= HELD {
             break;
         }
     }

@@ -6,10 +6,12 @@ use super::outcome::{Fairness, Move, MoveFigures, Outcome, Report, Slip, TradeOf
 use super::request::Request;
 use super::solve::{Solved, Traced};
 use super::space::Vector;
+use crate::geometry::bspline::{BasisTable, Pieces};
 use crate::geometry::{BSplineCurve, CurveIndex, Parametrization, interpolate};
 use crate::methods::FitError;
 use crate::solver::Control;
 use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
 
 /// Share of its tolerance from which a point counts as at its limit.
 const AT_LIMIT: f64 = 0.999;
@@ -39,7 +41,8 @@ pub(super) fn outcome<const D: usize>(
     let unit = shape.space.curve(&shape.x).map_err(broken)?;
     let curve = in_user_scale::<D>(&unit, prepared).map_err(broken)?;
     let plane = (D == 2).then(|| prepared.frame.leave_direction(&Vector3::z()));
-    let gauge = Gauge::new(&curve, plane, traced.closed);
+    let table = BasisTable::new(curve.knot_vector());
+    let gauge = Gauge::new(&curve, &table, plane, traced.closed);
     let moves = moves(request, prepared, solved, &unit, control)?;
     let figures = figures(&moves);
     let within = moves.iter().all(|m| keeps(m, prepared.frame.size));
@@ -91,43 +94,56 @@ fn moves<const D: usize>(
     control: &dyn Control,
 ) -> Result<Vec<Move>, FitError> {
     let index = CurveIndex::new(unit);
-    let start = unit.domain()[0];
-    let size = prepared.frame.size;
     let holds = holds_back(solved);
-    let free = solved.springs.is_free();
-    let mut out = Vec::with_capacity(request.points.len());
-    for (i, k) in prepared.stands_for.iter().enumerate() {
-        if i % CHECK_EVERY == 0 {
+    let curve = solved.shape.space.pieces(&solved.shape.x);
+    let chunks: Result<Vec<Vec<Move>>, FitError> = prepared
+        .stands_for
+        .par_chunks(CHECK_EVERY)
+        .enumerate()
+        .map(|(chunk, positions)| {
             control.check()?;
-        }
-        let u = solved.springs.feet[*k];
-        let at = super::space::in_space(&solved.springs.points[*k]);
-        let nearest = index.closest_near(&at, u);
-        let own = solved.shape.space.point(&solved.shape.x, u);
-        let held = solved.springs.pinned[*k] || !free;
-        let distance = (solved.springs.points[*k] - own).norm();
-        let (now, parameter, distance) = if held {
-            (own, u, distance)
-        } else {
-            (
-                Vector::from_fn(|c, _| nearest.point[c]),
-                nearest.parameter,
-                nearest.distance,
-            )
-        };
-        let tolerance = solved.tolerances[*k];
-        out.push(Move {
-            index: i,
-            given: request.points[i],
-            now: prepared.frame.leave(&now),
-            parameter: (parameter - start) * size,
-            distance: distance * size,
-            off_curve: nearest.distance * size,
-            tolerance: tolerance.is_finite().then_some(tolerance * size),
-            holds_back: holds[*k] / size.powi(4),
-        });
+            let measure = |(k, position): (usize, &usize)| Move {
+                index: chunk * CHECK_EVERY + k,
+                given: request.points[chunk * CHECK_EVERY + k],
+                ..one_move(prepared, solved, (&index, &curve, &holds), *position)
+            };
+            Ok(positions.iter().enumerate().map(measure).collect())
+        })
+        .collect();
+    Ok(chunks?.concat())
+}
+
+/// The move of the point at a position among those that count.
+fn one_move<const D: usize>(
+    prepared: &Prepared,
+    solved: &Solved<D>,
+    (index, curve, holds): (&CurveIndex, &Pieces<D>, &[f64]),
+    k: usize,
+) -> Move {
+    let start = solved.shape.space.domain()[0];
+    let size = prepared.frame.size;
+    let springs = &solved.springs;
+    let u = springs.feet[k];
+    let nearest = index.closest_near(&super::space::in_space(&springs.points[k]), u);
+    let held = springs.pinned[k] || !springs.is_free();
+    let (now, parameter, distance) = if held {
+        let own = curve.point(u);
+        (own, u, (springs.points[k] - own).norm())
+    } else {
+        let now = Vector::from_fn(|c, _| nearest.point[c]);
+        (now, nearest.parameter, nearest.distance)
+    };
+    let tolerance = solved.tolerances[k];
+    Move {
+        index: k,
+        given: Point3::origin(),
+        now: prepared.frame.leave(&now),
+        parameter: (parameter - start) * size,
+        distance: distance * size,
+        off_curve: nearest.distance * size,
+        tolerance: tolerance.is_finite().then_some(tolerance * size),
+        holds_back: holds[k] / size.powi(4),
     }
-    Ok(out)
 }
 
 /// −∂F/∂ε = 2z/ε of every point, unit scale.
@@ -305,5 +321,6 @@ fn before(
     points.dedup();
     let degree = 3.min(points.len().checked_sub(1)?).max(1);
     let curve = interpolate(&points, degree, Parametrization::ChordLength).ok()?;
-    Some(Gauge::new(&curve, plane, traced.closed).fairness())
+    let table = BasisTable::new(curve.knot_vector());
+    Some(Gauge::new(&curve, &table, plane, traced.closed).fairness())
 }

@@ -83,6 +83,9 @@ pub(super) fn suspects<const D: usize>(
             set_aside.push((*i, chance));
         }
     }
+    if set_aside.is_empty() {
+        return Ok(Vec::new());
+    }
     let residuals = springs.residuals(&shape.space, &shape.x);
     let set_aside = alone(set_aside, &springs, &residuals);
     if set_aside.is_empty() {

@@ -7,29 +7,20 @@
 //! functions that act within the period never see the clamped ends, so that
 //! all evaluation stays with [`crate::geometry`].
 
-use crate::geometry::bspline::{BasisJet, basis_jet};
+use crate::geometry::bspline::{BasisJet, BasisTable, Pieces};
 use crate::geometry::{BSplineCurve, Knots, SplineError};
 use crate::numerics::EnvelopeMatrix;
 use nalgebra::{Point3, SVector};
+use std::sync::Arc;
 
 /// A point or vector of the plane (D = 2) or of space (D = 3).
 pub(super) type Vector<const D: usize> = SVector<f64, D>;
-
-/// Value and derivatives of a curve at one parameter.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Jet<const D: usize> {
-    /// r.
-    pub(super) point: Vector<D>,
-    /// dr/du.
-    pub(super) d1: Vector<D>,
-    /// d²r/du².
-    pub(super) d2: Vector<D>,
-}
 
 /// A spline space with its numbering of unknowns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Space {
     knots: Knots,
+    table: Arc<BasisTable>,
     domain: [f64; 2],
     unknowns: usize,
     /// Index of the function that has unknown 0.
@@ -51,6 +42,7 @@ impl Space {
         let knots = Knots::clamped(degree, domain, inner)?;
         Ok(Space {
             unknowns: knots.control_count(),
+            table: Arc::new(BasisTable::new(&knots)),
             knots,
             domain,
             offset: 0,
@@ -80,8 +72,10 @@ impl Space {
         let long: Vec<f64> = (-p..=n as isize + p).map(knot).collect();
         let beyond = period / n as f64;
         let ends = [long[0] - beyond, long[long.len() - 1] + beyond];
+        let knots = Knots::clamped(degree, ends, &long)?;
         Ok(Space {
-            knots: Knots::clamped(degree, ends, &long)?,
+            table: Arc::new(BasisTable::new(&knots)),
+            knots,
             domain,
             unknowns: n,
             offset: degree + 1,
@@ -145,7 +139,7 @@ impl Space {
     /// Functions and their derivatives at a parameter of the domain.
     #[inline]
     pub(super) fn basis<const ROWS: usize>(&self, u: f64) -> BasisJet<ROWS> {
-        basis_jet(&self.knots, u)
+        self.table.jet(u)
     }
 
     /// The spans of the domain.
@@ -192,15 +186,9 @@ impl Space {
         sum
     }
 
-    /// Point and derivatives of the spline with coefficients `x`.
-    #[inline]
-    pub(super) fn jet<const D: usize>(&self, x: &[Vector<D>], u: f64) -> Jet<D> {
-        let b = self.basis::<3>(u);
-        Jet {
-            point: self.combine(b.first, b.values(), x),
-            d1: self.combine(b.first, b.derivative(1), x),
-            d2: self.combine(b.first, b.derivative(2), x),
-        }
+    /// The spline with coefficients `x`, prepared for very many parameters.
+    pub(super) fn pieces<const D: usize>(&self, x: &[Vector<D>]) -> Pieces<'_, D> {
+        self.table.pieces(|function| x[self.unknown(function)])
     }
 
     /// The point of the spline with coefficients `x`.

@@ -8,6 +8,7 @@
 //! more than ‖pᵢ − r(uᵢ)‖, what holds for held feet holds for the curve.
 
 use super::space::{Space, Vector};
+use crate::geometry::bspline::Pieces;
 use crate::numerics::EnvelopeMatrix;
 use rayon::prelude::*;
 
@@ -17,8 +18,10 @@ const CHUNK: usize = 4096;
 /// Newton steps a refresh may take; from the former foot two suffice.
 const NEWTON_STEPS: usize = 8;
 /// A step below this share of the domain is the last: convergence being
-/// quadratic, it leaves rounding.
-const SETTLED: f64 = 1e-8;
+/// quadratic, it leaves about 1e-8, of which a distance feels the square. A foot
+/// that must agree in some axes feels all of it, and takes a step more.
+const SETTLED: f64 = 1e-4;
+const SETTLED_IN_SOME_AXES: f64 = 1e-8;
 
 /// The points with their feet.
 #[derive(Debug, Clone)]
@@ -92,9 +95,10 @@ impl<const D: usize> Springs<D> {
         let order = space.degree() + 1;
         let triangle = order * (order + 1) / 2;
         let spans = space.functions();
+        let curve = space.pieces(x);
         let chunks: Vec<Sums<D>> = (0..self.points.len().div_ceil(CHUNK))
             .into_par_iter()
-            .map(|k| self.sum_chunk(space, x, k))
+            .map(|k| self.sum_chunk(space, &curve, k))
             .collect();
         let mut gram = Gram {
             matrix: space.matrix(1),
@@ -133,7 +137,7 @@ impl<const D: usize> Springs<D> {
         gram
     }
 
-    fn sum_chunk(&self, space: &Space, x: &[Vector<D>], chunk: usize) -> Sums<D> {
+    fn sum_chunk(&self, space: &Space, curve: &Pieces<D>, chunk: usize) -> Sums<D> {
         let order = space.degree() + 1;
         let triangle = order * (order + 1) / 2;
         let mut sums = Sums {
@@ -150,10 +154,10 @@ impl<const D: usize> Springs<D> {
             if w <= 0.0 {
                 continue;
             }
-            let basis = space.basis::<2>(self.feet[i]);
+            let basis = space.basis::<1>(self.feet[i]);
             let row = basis.values();
-            let away = self.points[i] - space.combine(basis.first, row, x);
-            let along = space.combine(basis.first, basis.derivative(1), x);
+            let [point, along] = curve.jet::<2>(self.feet[i]);
+            let away = self.points[i] - point;
             let offset = across(&away, &along);
             let block = &mut sums.outer[basis.first * triangle..][..triangle];
             let mut slots = block.iter_mut();
@@ -178,6 +182,7 @@ impl<const D: usize> Springs<D> {
     pub(super) fn refresh(&mut self, space: &Space, x: &[Vector<D>], reach: f64) -> f64 {
         let metric = self.metric;
         let [a, b] = space.domain();
+        let curve = space.pieces(x);
         self.feet
             .par_chunks_mut(CHUNK)
             .zip(self.points.par_chunks(CHUNK))
@@ -187,7 +192,7 @@ impl<const D: usize> Springs<D> {
                 for ((u, p), pinned) in feet.iter_mut().zip(points).zip(pinned) {
                     if !pinned {
                         let before = *u;
-                        *u = foot(space, x, p, (before, reach), &metric);
+                        *u = foot((space, &curve), p, (before, reach), &metric);
                         most = most.max((*u - before).abs());
                     }
                 }
@@ -214,6 +219,24 @@ impl<const D: usize> Springs<D> {
         }
     }
 
+    /// Every `every`-th of the springs, and those that are pinned.
+    pub(super) fn thinned(&self, every: usize) -> Self {
+        let kept = (0..self.points.len()).filter(|i| i % every == 0 || self.pinned[*i]);
+        self.some(&kept.collect::<Vec<_>>())
+    }
+
+    /// The springs of some points; held ones are forgotten.
+    pub(super) fn some(&self, kept: &[usize]) -> Self {
+        Springs {
+            points: kept.iter().map(|i| self.points[*i]).collect(),
+            weights: kept.iter().map(|i| self.weights[*i]).collect(),
+            feet: kept.iter().map(|i| self.feet[*i]).collect(),
+            pinned: kept.iter().map(|i| self.pinned[*i]).collect(),
+            held: Vec::new(),
+            metric: self.metric,
+        }
+    }
+
     /// Whether points may move in all directions.
     pub(super) fn is_free(&self) -> bool {
         self.metric.iter().all(|m| *m == 1.0)
@@ -233,49 +256,50 @@ impl<const D: usize> Springs<D> {
 
     /// pᵢ − r(uᵢ) for every point.
     pub(super) fn residuals(&self, space: &Space, x: &[Vector<D>]) -> Vec<Vector<D>> {
-        self.points
-            .par_chunks(CHUNK)
-            .zip(self.feet.par_chunks(CHUNK))
-            .flat_map_iter(|(points, feet)| {
-                points.iter().zip(feet).map(|(p, u)| p - space.point(x, *u))
-            })
+        let curve = space.pieces(x);
+        let away = |i: usize| self.points[i] - curve.point(self.feet[i]);
+        (0..self.points.len())
+            .into_par_iter()
+            .with_min_len(CHUNK)
+            .map(away)
             .collect()
     }
 }
 
 /// The foot of `p` near `start`, by damped Newton steps of at most `reach`.
 fn foot<const D: usize>(
-    space: &Space,
-    x: &[Vector<D>],
+    (space, curve): (&Space, &Pieces<D>),
     p: &Vector<D>,
     (start, reach): (f64, f64),
     metric: &Vector<D>,
 ) -> f64 {
     let [a, b] = space.domain();
+    let free = metric.iter().all(|m| *m == 1.0);
+    let settled = if free { SETTLED } else { SETTLED_IN_SOME_AXES };
     let mut u = start;
     let mut best = (f64::INFINITY, start);
     for _ in 0..NEWTON_STEPS {
-        let jet = space.jet(x, u);
-        let away = (p - jet.point).component_mul(metric);
+        let [point, d1, d2] = curve.jet::<3>(u);
+        let away = (p - point).component_mul(metric);
         let distance = away.norm_squared();
         if distance > best.0 {
             // Newton overshot: the foot before is the better one.
             break;
         }
         best = (distance, u);
-        let slope = away.dot(&jet.d1);
-        let speed = jet.d1.component_mul(metric).norm_squared();
+        let slope = away.dot(&d1);
+        let speed = d1.component_mul(metric).norm_squared();
         // Newton where the distance is convex, Gauss–Newton beyond the centre
         // of curvature, where Newton would run to the farthest point.
-        let bend = speed - away.dot(&jet.d2);
-        let curve = if bend > 0.1 * speed { bend } else { speed };
-        if curve <= 0.0 {
+        let bend = speed - away.dot(&d2);
+        let slant = if bend > 0.1 * speed { bend } else { speed };
+        if slant <= 0.0 {
             break;
         }
-        let step = (slope / curve).clamp(-reach, reach);
+        let step = (slope / slant).clamp(-reach, reach);
         let next = space.wrap(u + step);
         let moved = (next - u).abs();
-        if moved <= SETTLED * (b - a) {
+        if moved <= settled * (b - a) {
             return next;
         }
         u = next;

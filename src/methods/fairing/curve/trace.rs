@@ -428,9 +428,10 @@ fn along_arc<const D: usize>(first: &Traced, shape: &Shape<D>, mut springs: Spri
     }
     // Beyond the ends on the tangents.
     let residuals = springs.residuals(&shape.space, &shape.x);
+    let curve = shape.space.pieces(&shape.x);
     for ((s, u), e) in parameters.iter_mut().zip(&springs.feet).zip(&residuals) {
         if *u <= a || *u >= b {
-            let t = shape.space.jet(&shape.x, *u).d1;
+            let t = curve.jet::<2>(*u)[1];
             *s += e.dot(&t) / t.norm().max(f64::MIN_POSITIVE);
         }
     }
