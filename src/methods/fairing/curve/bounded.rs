@@ -4,15 +4,17 @@
 
 use super::energy::Energy;
 use super::free::{FIRST_ENERGY, HELD, Shape, soft_shape};
+use super::holds::Holds;
+use super::members::{self, Programme};
 use super::net::{MOST_SPANS, split, transfer};
 use super::solve::{Bench, Free, Solved};
-use super::space::Vector;
+use super::space::{Space, Vector};
 use super::springs::{Gram, Springs};
 use super::start::space_for;
 use super::stiffness::Offsets;
-use super::within::{Bounds, Fairest, Terms, enter, fairest};
+use super::within::{Bounds, Fairest, Terms, currency, enter, fairest};
 use crate::methods::FitError;
-use crate::solver::Stop;
+use crate::solver::{Control, Stop};
 
 /// Share of the tolerances from which the walk to the fairest can begin.
 const NEAR_ENOUGH: f64 = 0.97;
@@ -43,14 +45,59 @@ pub(super) fn worst<const D: usize>(
         .fold(0.0, f64::max)
 }
 
-impl<const D: usize> Free<D> {
-    fn terms<'a>(&'a self, bounds: Bounds<'a, D>) -> Terms<'a, D> {
+/// The walk to the fairest curve, for any of the points.
+struct Walk<'a, const D: usize> {
+    space: &'a Space,
+    energy: &'a Energy,
+    holds: &'a Holds<D>,
+    lazy: &'a Gram<D>,
+    control: &'a dyn Control,
+}
+
+/// The way into the bounds, at a price of slack.
+struct WayIn<'a, const D: usize> {
+    walk: Walk<'a, D>,
+    price: f64,
+}
+
+impl<'a, const D: usize> Walk<'a, D> {
+    fn terms(&self, tolerance: &'a [f64]) -> Terms<'a, D> {
         Terms {
-            space: &self.shape.space,
-            energy: &self.shape.energy,
-            holds: &self.holds,
-            bounds,
+            space: self.space,
+            energy: self.energy,
+            holds: self.holds,
+            bounds: Bounds {
+                tolerance,
+                others: self.lazy,
+            },
         }
+    }
+}
+
+impl<const D: usize> Programme<D> for Walk<'_, D> {
+    const GOES_ON: bool = false;
+
+    fn solve(
+        &self,
+        springs: &mut Springs<D>,
+        tolerances: &[f64],
+        x: &mut Vec<Vector<D>>,
+    ) -> Result<Fairest, Stop> {
+        fairest(&self.terms(tolerances), springs, x, self.control)
+    }
+}
+
+impl<const D: usize> Programme<D> for WayIn<'_, D> {
+    const GOES_ON: bool = true;
+
+    fn solve(
+        &self,
+        springs: &mut Springs<D>,
+        tolerances: &[f64],
+        x: &mut Vec<Vector<D>>,
+    ) -> Result<Fairest, Stop> {
+        let terms = self.walk.terms(tolerances);
+        enter(&terms, springs, x, self.price, self.walk.control)
     }
 }
 
@@ -60,6 +107,7 @@ impl<const D: usize> Bench<'_, D> {
         /// Times that spans may be halved where the bounds ask for it.
         const MOST_SPLITS: usize = 10;
         let limits = limits(&solved.tolerances);
+        let free = fit.clone();
         let mut used = self.approach(&mut fit, &limits)?;
         // Ever more spans at the feet of the fit, in the end at the places that
         // the points have by themselves.
@@ -104,7 +152,7 @@ impl<const D: usize> Bench<'_, D> {
         solved.shape = fit.shape.clone();
         solved.springs = fit.springs.clone();
         (fit.shape, fit.springs, fit.holds) = inner;
-        self.trade_off(fit, solved)
+        self.trade_off([&free, &fit], solved)
     }
 
     /// The other end from which to enter the bounds: the curve of ∫ |r‴|² du
@@ -117,7 +165,9 @@ impl<const D: usize> Bench<'_, D> {
         let mut springs = fit.springs.clone();
         springs.feet = feet;
         let broken = || FitError::Numerical("the points do not determine a curve".into());
-        let shape = soft_shape(space, &springs, self.quadratic).ok_or_else(broken)?;
+        let mut shape = soft_shape(space, &springs, self.quadratic).ok_or_else(broken)?;
+        // The curvature of a curve through the points is mostly noise.
+        shape.energy.relieve_as(&fit.shape.energy);
         let mut holds = self.holds(&shape, &springs.held);
         holds.follow(springs.held_feet());
         Ok(Free {
@@ -144,9 +194,9 @@ impl<const D: usize> Bench<'_, D> {
         let Some(x) = transfer(&shape.space, &shape.x, &space) else {
             return false;
         };
-        let energy = Energy::new(&space, fit.shape.energy.quadratic);
+        let mut energy = Energy::new(&space, fit.shape.energy.quadratic);
+        energy.relieve_as(&fit.shape.energy);
         fit.shape = Shape { space, x, energy };
-        fit.shape.relieve();
         fit.net = "the tolerance";
         fit.holds.unstraighten();
         for [a, b] in &self.task.straight {
@@ -173,15 +223,16 @@ impl<const D: usize> Bench<'_, D> {
         // into cusps, which are as good a way in as any to it.
         let own = fit.shape.energy.quadratic;
         fit.shape.energy.quadratic = own.or(Some(FIRST_ENERGY));
+        let currency = currency(&fit.shape.space, &fit.shape.energy, &fit.shape.x);
         let mut entered_at = Ok(0.0);
         for price in PRICES {
-            let bounds = Bounds {
-                tolerance: tolerances,
-                others: &lazy,
-            };
-            let terms = fit.terms(bounds);
             let (mut x, mut springs) = (fit.shape.x.clone(), fit.springs.clone());
-            let entered = enter(&terms, &mut springs, &mut x, price, self.control);
+            let way_in = WayIn {
+                walk: self.walk_of(fit, &fit.shape.energy, &lazy),
+                price: price * currency,
+            };
+            let bounds = (&mut springs, tolerances);
+            let entered = members::solve(&way_in, &fit.shape.space, bounds, &mut x);
             (fit.shape.x, fit.springs) = (x, springs);
             entered_at = entered.map(|e| e.slack);
             if !matches!(entered_at, Ok(slack) if slack >= 0.0) {
@@ -191,6 +242,21 @@ impl<const D: usize> Bench<'_, D> {
         fit.shape.energy.quadratic = own;
         entered_at?;
         Ok(worst(&fit.shape, &fit.springs, tolerances))
+    }
+
+    fn walk_of<'b>(
+        &'b self,
+        fit: &'b Free<D>,
+        energy: &'b Energy,
+        lazy: &'b Gram<D>,
+    ) -> Walk<'b, D> {
+        Walk {
+            space: &fit.shape.space,
+            energy,
+            holds: &fit.holds,
+            lazy,
+            control: self.control,
+        }
     }
 
     /// The interior point walk, with the multipliers of the holds around it.
@@ -205,27 +271,19 @@ impl<const D: usize> Bench<'_, D> {
         let mut result = None;
         for _ in 0..ROUNDS {
             fit.holds.follow(fit.springs.held_feet());
-            let bounds = Bounds {
-                tolerance: tolerances,
-                others: &lazy,
-            };
             let (mut x, mut springs) = (fit.shape.x.clone(), fit.springs.clone());
+            let space = &fit.shape.space;
             let far = fit.net == "the tolerance" && fit.shape.energy.quadratic.is_none();
             if result.is_none() && far {
                 // Downhill from far on the convex side first: ∫ κ′² has cusps
                 // to fall into.
                 let mut convex = fit.shape.energy.clone();
                 convex.quadratic = Some(FIRST_ENERGY);
-                let terms = Terms {
-                    energy: &convex,
-                    ..fit.terms(Bounds {
-                        tolerance: tolerances,
-                        others: &lazy,
-                    })
-                };
-                fairest(&terms, &mut springs, &mut x, self.control)?;
+                let downhill = self.walk_of(fit, &convex, &lazy);
+                members::solve(&downhill, space, (&mut springs, tolerances), &mut x)?;
             }
-            let walked = fairest(&fit.terms(bounds), &mut springs, &mut x, self.control)?;
+            let walk = self.walk_of(fit, &fit.shape.energy, &lazy);
+            let walked = members::solve(&walk, space, (&mut springs, tolerances), &mut x)?;
             (fit.shape.x, fit.springs) = (x, springs);
             result = Some(walked);
             if fit.holds.tighten(&fit.shape.space, &fit.shape.x) <= HELD {
@@ -291,41 +349,48 @@ impl<const D: usize> Bench<'_, D> {
         springs.gram(&fit.shape.space, &fit.shape.x)
     }
 
-    /// What other tolerances would give, each from the last.
-    fn trade_off(&self, mut fit: Free<D>, solved: &mut Solved<D>) -> Result<(), FitError> {
-        /// Factors of the tolerances, from the feasible side.
+    /// What other tolerances would give: from the free fit, or, where that
+    /// finds no way in, from where the walk began.
+    fn trade_off(&self, starts: [&Free<D>; 2], solved: &mut Solved<D>) -> Result<(), FitError> {
+        /// Factors of the tolerances.
         const FACTORS: [f64; 4] = [4.0, 2.0, 0.5, 0.25];
         /// Points beyond which the table would cost more than the fit.
         const MOST_POINTS: usize = 20_000;
-        let row = |factor: f64, used: f64, shape: &Shape<D>, springs: &Springs<D>| {
-            let energy = shape.energy.cost(&shape.space, &shape.x)[0];
-            let residuals = springs.residuals(&shape.space, &shape.x);
-            let most = residuals.iter().map(Vector::norm).fold(0.0, f64::max);
-            [factor, used, energy, most]
-        };
-        let own = row(1.0, solved.used, &solved.shape, &solved.springs);
+        let own = trade_off_row(1.0, solved.used, &solved.shape, &solved.springs);
         solved.trade_off.push(own);
         if self.task.points.len() <= MOST_POINTS {
             for factor in FACTORS {
                 let own = limits(&solved.tolerances);
                 let tolerances: Vec<f64> = own.iter().map(|t| t * factor).collect();
-                let used = self.approach(&mut fit, &tolerances)?;
-                if used >= 1.0 {
-                    solved
-                        .trade_off
-                        .push(row(factor, used, &fit.shape, &fit.springs));
-                    continue;
+                let mut fit = starts[0].clone();
+                let mut used = self.approach(&mut fit, &tolerances)?;
+                if used >= 1.0 && starts[1].shape.space != starts[0].shape.space {
+                    fit = starts[1].clone();
+                    used = self.approach(&mut fit, &tolerances)?;
                 }
-                let kept = (fit.shape.clone(), fit.springs.clone(), fit.holds.clone());
-                self.walk(&mut fit, &tolerances)?;
-                let used = worst(&fit.shape, &fit.springs, &tolerances);
-                solved
-                    .trade_off
-                    .push(row(factor, used, &fit.shape, &fit.springs));
-                (fit.shape, fit.springs, fit.holds) = kept;
+                if used < 1.0 {
+                    self.walk(&mut fit, &tolerances)?;
+                    used = worst(&fit.shape, &fit.springs, &tolerances);
+                }
+                let row = trade_off_row(factor, used, &fit.shape, &fit.springs);
+                solved.trade_off.push(row);
             }
         }
         solved.trade_off.sort_by(|a, b| a[0].total_cmp(&b[0]));
         Ok(())
     }
+}
+
+/// Factor, share used, ∫ κ′² ds, largest move.
+fn trade_off_row<const D: usize>(
+    factor: f64,
+    used: f64,
+    shape: &Shape<D>,
+    springs: &Springs<D>,
+) -> [f64; 4] {
+    // As it is measured, without weights along the curve.
+    let energy = Energy::new(&shape.space, None).cost(&shape.space, &shape.x)[0];
+    let residuals = springs.residuals(&shape.space, &shape.x);
+    let most = residuals.iter().map(Vector::norm).fold(0.0, f64::max);
+    [factor, used, energy, most]
 }

@@ -37,12 +37,13 @@ pub(super) type Quadratic = [f64; 3];
 const EVEN_SPEED: f64 = 1e-2;
 
 /// Weight of ∫ κ′² ds where the curvature is κ: 1 where the curve is gentle,
-/// falling as |κ|⁻³ beyond `gentle` (1/length). κ′² ds has the dimension
+/// falling as |κ|⁻³ beyond `gentle` (1/length), at once: at a third of it the
+/// weight is 0.99. κ′² ds has the dimension
 /// length⁻³, so that a bend ten times as sharp, ten times as small, then
 /// counts as much as the great one that it resembles.
 pub(super) fn relief(curvature: f64, gentle: f64) -> f64 {
     let sharpness = curvature / gentle;
-    (1.0 + sharpness * sharpness).powf(-1.5)
+    (1.0 + sharpness.powi(4)).powf(-0.75)
 }
 
 /// Spans to each side over which the curvature is averaged for [`relief`].
@@ -208,6 +209,17 @@ impl Energy {
                 .iter()
                 .fold([0.0; 2], |s, n| [s[0] + n[0], s[1] + n[1]]);
             *weight = relief(turn / length.max(f64::MIN_POSITIVE), gentle);
+        }
+    }
+
+    /// Takes the weights along the curve from an energy on the same domain.
+    pub(super) fn relieve_as(&mut self, other: &Energy) {
+        let mut k = 0;
+        for (weight, node) in self.relief.iter_mut().zip(&self.nodes) {
+            while k + 1 < other.nodes.len() && other.nodes[k].u < node.u {
+                k += 1;
+            }
+            *weight = other.relief[k];
         }
     }
 

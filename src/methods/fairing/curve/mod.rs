@@ -16,7 +16,8 @@
 //!    shape needs (`net`).
 //! 4. `slips`: points that the fair shape of the others does not expect.
 //! 5. `within`: with tolerances, an interior point walk to the fairest curve
-//!    within them. Its multipliers say which points hold the shape back.
+//!    within them. Its multipliers say which points hold the shape back; of
+//!    many points only those that can do so take part (`members`).
 //! 6. `report`, `fairness`: everything measured anew on the delivered curve.
 //!
 //! `paper` solves as Jing, Xi & Tang 1998 do, for comparison.
@@ -45,6 +46,7 @@ mod fairness;
 mod free;
 mod holds;
 mod input;
+mod members;
 mod net;
 pub mod outcome;
 mod paper;

@@ -115,6 +115,7 @@ pub(super) fn solve<const D: usize>(
 }
 
 /// A free fit.
+#[derive(Clone)]
 pub(super) struct Free<const D: usize> {
     pub(super) shape: Shape<D>,
     pub(super) springs: Springs<D>,

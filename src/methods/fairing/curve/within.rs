@@ -38,6 +38,9 @@ const KEPT: f64 = 0.02;
 const FALL: f64 = 0.2;
 /// Slack at which a curve has entered its bounds: 5 % of room on every side.
 const ENTERED: f64 = -0.1;
+/// A way in ends where so many steps take off less than this share of ‖e‖²/ε².
+const STRETCH: usize = 12;
+const STALLED: f64 = 0.005;
 /// Longest step of a foot, as a share of the domain.
 const REACH: f64 = 0.02;
 /// Shortenings of a step.
@@ -119,9 +122,9 @@ pub(super) fn fairest<const D: usize>(
 }
 
 /// Walks from any `x` into the bounds, as fair as that can be, by a slack s in
-/// ‖eᵢ‖² ≤ (1 + s) εᵢ² that costs `price` times the energy. Ends as soon as
-/// every point is within; a slack above 0 at the end says that the spline
-/// cannot (or not at that price).
+/// ‖eᵢ‖² ≤ (1 + s) εᵢ² that costs `price`. Ends as soon as every point is
+/// within; a slack above 0 at the end says that the spline cannot (or not at
+/// that price).
 ///
 /// # Errors
 /// When the control says stop.
@@ -132,12 +135,16 @@ pub(super) fn enter<const D: usize>(
     price: f64,
     control: &dyn Control,
 ) -> Result<Fairest, Stop> {
-    // Where the curve is still a line or an arc, the energy of one that is
-    // neither: κ changing by 1/L along it.
-    let [a, b] = terms.space.domain();
-    let energy = terms.objective(x).max((b - a).powi(-3));
-    let mut walk = Walk::begin(terms, springs, x, price * energy);
+    let mut walk = Walk::begin(terms, springs, x, price);
     walk.run(terms, control)
+}
+
+/// The energy of a curve in which prices are counted: where it is still a line
+/// or an arc, that of one that is neither, κ changing by 1/L along it.
+pub(super) fn currency<const D: usize>(space: &Space, energy: &Energy, x: &[Vector<D>]) -> f64 {
+    let [a, b] = space.domain();
+    let [fair, even] = energy.cost(space, x);
+    (fair + even).max((b - a).powi(-3))
 }
 
 impl<'a, const D: usize> Walk<'a, D> {
@@ -175,9 +182,16 @@ impl<'a, const D: usize> Walk<'a, D> {
         let mut steps = 0;
         // A circle or a line is as fair as can be; the nearest one is given.
         let done = self.price == 0.0 && terms.objective(self.x) <= nothing;
+        let mut before_stretch = f64::INFINITY;
         while steps < MOST_STEPS && !done {
             control.check()?;
             steps += 1;
+            if self.price > 0.0 && steps % STRETCH == 0 {
+                if before_stretch - self.slack <= STALLED * (1.0 + self.slack) {
+                    break;
+                }
+                before_stretch = self.slack;
+            }
             let before = self.objective(terms);
             let share = self.advance(terms, before);
             if self.price > 0.0 && self.slack <= ENTERED {
@@ -297,13 +311,14 @@ impl<'a, const D: usize> Walk<'a, D> {
     /// function F + price·s − μ Σ ln c.
     fn search(&self, terms: &Terms<D>, step: &Step, before: f64) -> Option<f64> {
         let change: Vec<Vector<D>> = as_vectors(&step.d);
+        let (curve, moved) = (terms.space.pieces(self.x), terms.space.pieces(&change));
         let pairs: Vec<Pair<D>> = (0..self.springs.points.len())
             .filter(|i| terms.bounds.tolerance[*i].is_finite())
             .map(|i| {
                 let u = self.springs.feet[i];
                 Pair {
-                    away: self.springs.points[i] - terms.space.point(self.x, u),
-                    change: terms.space.point(&change, u),
+                    away: self.springs.points[i] - curve.point(u),
+                    change: moved.point(u),
                     tolerance: terms.bounds.tolerance[i],
                     room: self.rooms[i],
                 }
@@ -361,8 +376,9 @@ impl<const D: usize> Terms<'_, D> {
 
     /// cᵢ = 1 − ‖eᵢ‖²/εᵢ².
     fn rooms(&self, springs: &Springs<D>, x: &[Vector<D>]) -> Vec<f64> {
+        let curve = self.space.pieces(x);
         self.per_point(springs, |i| {
-            let e = springs.points[i] - self.space.point(x, springs.feet[i]);
+            let e = springs.points[i] - curve.point(springs.feet[i]);
             room(&e, self.bounds.tolerance[i])
         })
     }
@@ -370,11 +386,12 @@ impl<const D: usize> Terms<'_, D> {
     /// dcᵢ for a full step along `d`.
     fn slopes(&self, springs: &Springs<D>, x: &[Vector<D>], d: &[f64]) -> Vec<f64> {
         let change: Vec<Vector<D>> = as_vectors(d);
+        let (curve, moved) = (self.space.pieces(x), self.space.pieces(&change));
         self.per_point(springs, |i| {
             let u = springs.feet[i];
-            let e = springs.points[i] - self.space.point(x, u);
+            let e = springs.points[i] - curve.point(u);
             let t = self.bounds.tolerance[i];
-            2.0 * e.dot(&self.space.point(&change, u)) / (t * t)
+            2.0 * e.dot(&moved.point(u)) / (t * t)
         })
     }
 
@@ -425,6 +442,7 @@ impl<const D: usize> Terms<'_, D> {
         self.holds.add(self.space, x, &mut model);
         add_springs(self.bounds.others, x, &mut model);
         let n = springs.points.len();
+        let curve = self.space.pieces(x);
         let sums: Vec<Sums> = (0..n.div_ceil(CHUNK))
             .into_par_iter()
             .map(|k| {
@@ -432,7 +450,7 @@ impl<const D: usize> Terms<'_, D> {
                 for i in k * CHUNK..(k * CHUNK + CHUNK).min(n) {
                     let t = self.bounds.tolerance[i];
                     if t.is_finite() {
-                        let e = springs.points[i] - self.space.point(x, springs.feet[i]);
+                        let e = springs.points[i] - curve.point(springs.feet[i]);
                         let stiff = Stiff {
                             spring: weights.duals[i] / (t * t),
                             wall: 2.0 * weights.duals[i] / (weights.rooms[i] * t.powi(4)),
