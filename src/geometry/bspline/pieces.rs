@@ -122,13 +122,10 @@ impl BasisTable {
         let mut rows = [[0.0; MOST]; ROWS];
         for c in coefficients.iter().rev() {
             for r in (1..ROWS).rev() {
-                for j in 0..MOST {
-                    rows[r][j] = rows[r][j] * at.t + rows[r - 1][j];
-                }
+                let lower = rows[r - 1];
+                raise(&mut rows[r], at.t, &lower);
             }
-            for j in 0..MOST {
-                rows[0][j] = rows[0][j] * at.t + c[j];
-            }
+            raise(&mut rows[0], at.t, c);
         }
         let mut scale = 1.0;
         for (r, row) in rows.iter_mut().enumerate().skip(1) {
@@ -157,6 +154,14 @@ impl BasisTable {
             table: self,
             coefficients,
         }
+    }
+}
+
+/// One step of Horner's scheme for all functions.
+#[inline]
+fn raise(row: &mut [f64; MOST], t: f64, next: &[f64; MOST]) {
+    for (value, next) in row.iter_mut().zip(next) {
+        *value = *value * t + next;
     }
 }
 
