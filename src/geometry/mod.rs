@@ -6,8 +6,10 @@ mod bounding_box;
 pub mod bspline;
 mod circular_arc;
 mod closest;
+pub mod cone;
 #[cfg(test)]
 pub(crate) mod conformance;
+mod convex;
 mod distance;
 mod dupin_cyclide;
 pub mod mesh;
@@ -23,6 +25,7 @@ pub use bspline::{
 };
 pub use circular_arc::CircularArc;
 pub use closest::{Closest, CurveIndex};
+pub use convex::convex_overlap;
 pub use distance::{CurveDistance, directed_distance, directed_distance_between};
 pub use dupin_cyclide::{CyclideCorner, CyclideError, CyclidePatch};
 pub use mesh::{Face, Manifold, Mesh, MeshError, MeshFault, Topology};

@@ -1,6 +1,7 @@
 //! Unrolling a ribbon: a line whose arcs have constant geodesic curvature, and
 //! straight rulings square to it.
 
+use crate::geometry::convex_overlap;
 use crate::numerics::sinc;
 use nalgebra::{Point2, Rotation2, Vector2};
 
@@ -58,7 +59,7 @@ pub(super) fn unroll(pieces: &[Piece]) -> Vec<Sheet> {
         let mut field = drawn.outline();
         // The piece before shares a ruling.
         let before = fields.len().saturating_sub(1);
-        if sheets.is_empty() || fields[..before].iter().any(|f| overlap(f, &field)) {
+        if sheets.is_empty() || fields[..before].iter().any(|f| convex_overlap(f, &field)) {
             pen = Pen::default();
             drawn = pen.draw(piece);
             field = drawn.outline();
@@ -123,31 +124,4 @@ impl Pen {
         };
         sheet
     }
-}
-
-/// Fields that share no more than this part of their width only touch.
-const TOUCH: f64 = 1e-9;
-
-/// Whether two small fields overlap, by separating lines along their edges;
-/// bent fields may be said to overlap though they only come near, which cuts a
-/// sheet too early but never too late.
-fn overlap(a: &[Point2<f64>], b: &[Point2<f64>]) -> bool {
-    let splits = |a: &[Point2<f64>], b: &[Point2<f64>]| {
-        (0..a.len()).any(|i| {
-            let side = a[(i + 1) % a.len()] - a[i];
-            let across = Vector2::new(-side.y, side.x);
-            let span = |points: &[Point2<f64>]| {
-                points
-                    .iter()
-                    .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| {
-                        let x = across.dot(&p.coords);
-                        [low.min(x), high.max(x)]
-                    })
-            };
-            let ([a0, a1], [b0, b1]) = (span(a), span(b));
-            let slack = TOUCH * (a1 - a0).min(b1 - b0);
-            a1 <= b0 + slack || b1 <= a0 + slack
-        })
-    };
-    !splits(a, b) && !splits(b, a)
 }
