@@ -97,17 +97,27 @@ impl Lattice {
 }
 
 fn sample(patch: &BSplineSurface, k: usize, l: usize) -> (Point3<f64>, Vector3<f64>) {
-    let [x, y] = [k, l].map(|n| n as f64 / CELLS as f64);
-    let u = own_parameter(x, patch, Axis::U, y);
-    let v = own_parameter(y, patch, Axis::V, x);
+    let shares = [k, l].map(|n| n as f64 / CELLS as f64);
+    let [u, v] = [(Axis::U, 0, 1), (Axis::V, 1, 0)].map(|(along, own, other)| {
+        let across = if along == Axis::U { Axis::V } else { Axis::U };
+        let at = inside(patch.domain(across), shares[other]);
+        inside(
+            patch.domain(along),
+            own_share(shares[own], patch, along, at),
+        )
+    });
     let jet = patch.derivatives_left(u, v);
     (jet.point, jet.normal().unwrap_or_else(Vector3::zeros))
 }
 
-/// The parameter along `along` whose place the line at `across` would have at
-/// `common` if its end weights were 1.
-fn own_parameter(common: f64, patch: &BSplineSurface, along: Axis, across: f64) -> f64 {
-    let Ok(line) = patch.iso_curve(along, across) else {
+fn inside([first, last]: [f64; 2], share: f64) -> f64 {
+    first + (last - first) * share
+}
+
+/// The share of its parameters along `along` at which the line at `at` has the
+/// place that it would have at `common` if its end weights were 1.
+fn own_share(common: f64, patch: &BSplineSurface, along: Axis, at: f64) -> f64 {
+    let Ok(line) = patch.iso_curve(along, at) else {
         return common;
     };
     let [from, to] = match line.weights() {

@@ -40,7 +40,7 @@ pub struct PatchSheet {
     pub counts: [usize; 2],
     /// Whether u, whether v closes.
     pub closed: [bool; 2],
-    /// The patches over [0, 1]², row after row; `None`: a gap.
+    /// The patches, one Bézier piece each, row after row; `None`: a gap.
     pub patches: Vec<Option<BSplineSurface>>,
 }
 

@@ -15,15 +15,19 @@ use crate::solver::Stop;
 ///
 /// # Errors
 /// [`FitError::Stopped`] when the control says so.
-pub fn build(start: &Net, options: &Options, control: &dyn Control) -> Result<Cyclides, FitError> {
+pub(super) fn build(
+    start: &Net,
+    options: &Options,
+    control: &dyn Control,
+) -> Result<Cyclides, FitError> {
     let spline = cyclide::solve(start, control)?;
-    control.progress("proving", 90.0);
+    control.progress("proving", 75.0);
     let net = spline.net;
     let patches: Vec<_> = patches(&net).into_iter().map(Result::ok).collect();
     control.check()?;
     let certificates: Vec<_> = certificates(&net).into_iter().map(Result::ok).collect();
     let figures = figures(start, &net, &certificates, spline.iterations);
-    control.progress("strips", 93.0);
+    control.progress("strips", 85.0);
     let built = Cyclides {
         strips: all_strips(&net, &patches, options, control)?,
         offsets: all_offsets(&net, &patches, options, control)?,

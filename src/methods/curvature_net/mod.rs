@@ -44,13 +44,15 @@
 //! Nets without singular vertices only; see [`request::Input`].
 
 mod bend;
-pub mod build;
+mod build;
 pub mod cyclide;
+mod deliver;
 pub mod diagnose;
 mod input;
 pub mod lines;
 pub mod net;
 pub mod outcome;
+mod report;
 pub mod request;
 mod smooth;
 pub mod structure;
@@ -58,6 +60,78 @@ pub mod surface;
 
 pub use input::MOST_PATCHES;
 pub use net::Net;
+pub use outcome::Outcome;
 pub use request::Request;
 pub use smooth::{Smooth, smooth};
 pub use surface::Surface;
+
+use super::{Control, FitError, Stop};
+use crate::geometry::BoundingBox;
+
+/// Fits a surface whose patch borders are lines of curvature, and what is
+/// built from it.
+///
+/// # Errors
+/// [`FitError::Invalid`] for unusable input, [`FitError::Stopped`] when the
+/// control says so.
+pub fn fit(request: &Request, control: &dyn Control) -> Result<Outcome, FitError> {
+    let smooth = smooth(request, &Share::new(control, [0.0, SMOOTH]))?;
+    let surface = deliver::spline(&smooth.surface)
+        .map_err(|e| FitError::Numerical(format!("the surface is no spline: {e}")))?;
+    let start = smooth.surface.net();
+    let cyclides = if request.options.cyclide {
+        let rest = Share::new(control, [SMOOTH, 100.0]);
+        Some(build::build(&start, &request.options, &rest)?)
+    } else {
+        None
+    };
+    let net = cyclides.as_ref().map_or(start, |c| c.net.clone());
+    let mut outcome = Outcome {
+        within_limits: report::within_limits(&smooth, cyclides.as_ref()),
+        summary: Vec::new(),
+        warnings: Vec::new(),
+        model_size: BoundingBox::of(&net.points).map_or(0.0, |b| b.longest_side()),
+        surface,
+        smooth,
+        net,
+        cyclides,
+    };
+    outcome.summary = report::summary(&outcome);
+    control.progress("done", 100.0);
+    Ok(outcome)
+}
+
+/// What the smooth surface takes of the whole, percent.
+const SMOOTH: f64 = 60.0;
+
+/// A control to which a part of the fit tells its own progress, 0 to 100.
+struct Share<'a> {
+    control: &'a dyn Control,
+    range: [f64; 2],
+}
+
+impl<'a> Share<'a> {
+    fn new(control: &'a dyn Control, range: [f64; 2]) -> Self {
+        Share { control, range }
+    }
+}
+
+impl Control for Share<'_> {
+    fn check(&self) -> Result<(), Stop> {
+        self.control.check()
+    }
+
+    fn progress(&self, phase: &'static str, percent: f64) {
+        let [from, to] = self.range;
+        self.control
+            .progress(phase, from + (to - from) * percent / 100.0);
+    }
+}
+
+/// Everything that can be said about a request without fitting it.
+///
+/// # Errors
+/// [`FitError::Invalid`] with every issue found.
+pub fn validate(request: &Request) -> Result<Vec<String>, FitError> {
+    input::Task::new(request).map(|_| Vec::new())
+}

@@ -1,10 +1,36 @@
 //! What the method gives. Lengths in the unit of the request; nothing here
 //! depends on time or thread count.
 
+use super::Smooth;
 use super::cyclide::Certificate;
 use super::net::Net;
 use super::structure::{Member, Offset, Strip, Support};
-use crate::geometry::CyclidePatch;
+use crate::geometry::{BSplineSurface, CyclidePatch};
+
+/// The surface, its net and what is built from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Whether the borders are lines of curvature as asked, none of the net's
+    /// patches has an umbilic, and the cyclide spline, its offsets and supports
+    /// are there without a gap or a fold.
+    pub within_limits: bool,
+    /// Sentences, the verdict first.
+    pub summary: Vec<String>,
+    /// What the user should know about the input.
+    pub warnings: Vec<String>,
+    /// The longest side of the net's bounding box.
+    pub model_size: f64,
+    /// The smooth surface as one C¹ bicubic spline; a net that closes is cut
+    /// at its first row or column.
+    pub surface: BSplineSurface,
+    /// The smooth surface with its figures.
+    pub smooth: Smooth,
+    /// Vertices and frames as delivered: of the cyclide spline where that was
+    /// asked, else of the smooth surface.
+    pub net: Net,
+    /// The cyclide spline; none unless asked.
+    pub cyclides: Option<Cyclides>,
+}
 
 /// The exact cyclide spline and what is built from it.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 //! and in those of circular nets.
 
 use super::patches::patches;
-use crate::geometry::{CyclideError, CyclidePatch, SurfaceJet};
+use crate::geometry::{BSplineSurface, CyclideError, CyclidePatch, SurfaceJet};
 use crate::methods::curvature_net::net::Net;
 use nalgebra::{Quaternion, Vector3};
 
@@ -63,8 +63,16 @@ const PLACES: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 pub fn certificates(net: &Net) -> Vec<Result<Certificate, CyclideError>> {
     let layout = net.layout();
     let [rows, columns] = layout.patch_counts();
-    let patches = patches(net);
-    let at = |i: usize, j: usize| patches[i * columns + j].ok();
+    let patches: Vec<_> = patches(net)
+        .into_iter()
+        .map(|patch| {
+            patch.and_then(|patch| {
+                let surface = patch.surface()?;
+                Ok(Proved { patch, surface })
+            })
+        })
+        .collect();
+    let at = |i: usize, j: usize| patches[i * columns + j].as_ref().ok();
     let next = |k: usize, count: usize, closed: bool| match k + 1 {
         next if next < count => Some(next),
         _ => closed.then_some(0),
@@ -76,7 +84,7 @@ pub fn certificates(net: &Net) -> Vec<Result<Certificate, CyclideError>> {
             let beyond_u = next(i, rows, net.closed[0]).and_then(|i| at(i, j));
             let beyond_v = next(j, columns, net.closed[1]).and_then(|j| at(i, j));
             let bend = |sides, beyond| match (at(i, j), beyond) {
-                (Some(own), Some(other)) => tangency(&own, &other, sides),
+                (Some(own), Some(other)) => tangency(own, other, sides),
                 _ => 0.0,
             };
             [bend([3, 2], beyond_u), bend([1, 0], beyond_v)]
@@ -90,14 +98,14 @@ pub fn certificates(net: &Net) -> Vec<Result<Certificate, CyclideError>> {
     };
     (layout.patches().zip(&patches))
         .map(|((i, j), patch)| {
-            let patch = (*patch)?;
+            let proved = patch.as_ref().map_err(|e| *e)?;
             let corners = layout.corners(i, j);
             Ok(Certificate {
                 mirror: mirror(net, corners),
-                orthogonality: orthogonality(&patch),
+                orthogonality: orthogonality(proved),
                 tangency: bends(i, j),
                 circularity: circularity(net, corners),
-                reality: patch.defect(),
+                reality: proved.patch.defect(),
             })
         })
         .collect()
@@ -129,27 +137,35 @@ fn circularity(net: &Net, [a, b, c, d]: [usize; 4]) -> f64 {
         .norm()
 }
 
-/// A jet on a side of the rational patch.
-fn on_side(patch: &CyclidePatch, side: usize, parameter: f64) -> Option<SurfaceJet> {
-    let [u, v] = patch.on_side(side, parameter);
-    Some(patch.surface().ok()?.derivatives_left(u, v))
+/// A patch with its rational form.
+struct Proved {
+    patch: CyclidePatch,
+    surface: BSplineSurface,
 }
 
-fn orthogonality(patch: &CyclidePatch) -> f64 {
+impl Proved {
+    /// A jet on a side of the rational patch.
+    fn on_side(&self, side: usize, parameter: f64) -> SurfaceJet {
+        let [u, v] = self.patch.on_side(side, parameter);
+        self.surface.derivatives_left(u, v)
+    }
+}
+
+fn orthogonality(proved: &Proved) -> f64 {
     let corners = [(0, 0.0), (0, 1.0), (1, 0.0), (1, 1.0)];
     corners
         .into_iter()
-        .filter_map(|(side, parameter)| on_side(patch, side, parameter))
+        .map(|(side, parameter)| proved.on_side(side, parameter))
         .map(|jet| (jet.du.dot(&jet.dv) / (jet.du.norm() * jet.dv.norm())).abs())
         .fold(0.0, f64::max)
 }
 
-fn tangency(own: &CyclidePatch, other: &CyclidePatch, sides: [usize; 2]) -> f64 {
+fn tangency(own: &Proved, other: &Proved, sides: [usize; 2]) -> f64 {
     PLACES
         .into_iter()
         .filter_map(|parameter| {
-            let own = on_side(own, sides[0], parameter)?.normal()?;
-            let other = on_side(other, sides[1], parameter)?.normal()?;
+            let own = own.on_side(sides[0], parameter).normal()?;
+            let other = other.on_side(sides[1], parameter).normal()?;
             // Unlike the arc cosine of their product this keeps small angles.
             Some(own.cross(&other).norm().atan2(own.dot(&other)))
         })

@@ -45,6 +45,9 @@ const STEPS: usize = 2;
 /// Most steps of the last run; Newton's iteration needs three or four.
 const LAST_STEPS: usize = 30;
 
+/// What the solver takes of making the cyclide spline and all from it, percent.
+const SHARE: f64 = 75.0;
+
 /// The cyclide spline nearest to a net of curvature lines.
 ///
 /// # Errors
@@ -60,6 +63,7 @@ pub fn solve(start: &Net, control: &dyn Control) -> Result<Spline, Stop> {
     let mut x = vec![0.0; problem.dimension()];
     let mut iterations = 0;
     for run in 0..=RUNS {
+        control.progress("cyclides", SHARE * f64::from(run) / f64::from(RUNS + 1));
         let last = run == RUNS;
         let left = if last { 0.0 } else { FADING.powi(run) };
         problem.soft = Soft {

@@ -88,6 +88,61 @@ fn flat_patterns_keep_lines_rulings_and_edges() {
     }
 }
 
+/// The distance of two points along a cone, cylinder or plane, by its apex and
+/// axis alone.
+fn along_the_cone(cone: &super::Cone, p: &Point3<f64>, q: &Point3<f64>) -> Option<f64> {
+    let axis = cone.arc.axis()?;
+    let centre = cone.arc.centre()?;
+    let azimuth = |p: &Point3<f64>| {
+        let out = p - centre;
+        out - axis * axis.dot(&out)
+    };
+    let (a, b) = (azimuth(p), azimuth(q));
+    let turn = a.cross(&b).norm().atan2(a.dot(&b));
+    match (cone.kind, cone.apex()) {
+        (ConeKind::Plane, _) => Some((q - p).norm()),
+        (ConeKind::Cylinder, _) => Some((a.norm() * turn).hypot(axis.dot(&(q - p)))),
+        (ConeKind::Cone, Some(apex)) => {
+            let [r, s] = [p, q].map(|p| (p - apex).norm());
+            let turn = turn * cone.half_angle().sin();
+            // The law of cosines, without its loss of digits at small angles.
+            let half = (0.5 * turn).sin();
+            Some(((r - s).powi(2) + 4.0 * r * s * half * half).sqrt())
+        }
+        (ConeKind::Cone, None) => None,
+    }
+}
+
+#[test]
+fn flat_distances_are_those_on_the_cones() {
+    let mut checked = 0;
+    for (name, net) in nets() {
+        let (net, patches) = exact(&net);
+        for direction in [Direction::U, Direction::V] {
+            for strip in strips(&net, &patches, direction) {
+                let flat = strip.sheets.iter().flat_map(|sheet| {
+                    let pieces = (0..sheet.line.len() / SAMPLES).map(|k| SAMPLES * k);
+                    pieces.map(|at| [&sheet.left, &sheet.right].map(|e| &e[at..=at + SAMPLES]))
+                });
+                for (cone, flat) in strip.cones.iter().zip(flat) {
+                    for (edge, flat) in cone.edges.iter().zip(flat) {
+                        for (k, l) in [(0, 1), (1, 2), (3, 7), (0, SAMPLES)] {
+                            let on = along_the_cone(cone, &edge[k], &edge[l]);
+                            let Some(on) = on.filter(|d| *d > 1e-6) else {
+                                continue;
+                            };
+                            let off = ((flat[k] - flat[l]).norm() - on).abs() / on;
+                            assert!(off < 1e-9, "{name} {}: {off}", strip.name);
+                            checked += 1;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(checked > 3000, "{checked}");
+}
+
 #[test]
 fn cones_touch_the_patches_and_each_other() {
     for (name, net) in nets() {
