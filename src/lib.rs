@@ -4,7 +4,9 @@
 //! plates developed. This crate is that loft behind HTTP: a JSON job with the
 //! profile curves of a hull goes in; B-spline plates that a yard can bend from
 //! flat steel come out, with the figures that prove it. Or measured offsets go
-//! in, and fair lines and surfaces come out, with the table of corrections.
+//! in, and fair lines and surfaces come out, with the table of corrections. Or a
+//! coarse net of quads goes in, and a skin of cyclide patches comes out, with
+//! the flat patterns of its strips and supports.
 //!
 //! ```text
 //!             app ─────────────► everything
@@ -35,8 +37,8 @@
 //!
 //! ## Reading order
 //!
-//! [`methods::hull_plates`] and [`methods::fairing`] for what is computed and
-//! why, [`solver`] for how
+//! [`methods::hull_plates`], [`methods::fairing`] and
+//! [`methods::curvature_net`] for what is computed and why, [`solver`] for how
 //! it is minimised, [`geometry`] for the splines beneath; [`jobs`] for the
 //! durable queue and [`http`] for the contract with the world.
 

@@ -537,11 +537,13 @@ async fn going_down_refuses_jobs_and_readiness() {
 async fn unbuilt_methods_are_told_apart_from_slips() {
     let service = idle_service().await;
     let mut job = job("deck");
-    job["method"] = "curvature_net".into();
-    service
-        .post("/v1/jobs", job.to_string())
-        .await
-        .problem(422, "method-not-available");
+    for name in mouldloft::http::methods::UNBUILT {
+        job["method"] = (*name).into();
+        service
+            .post("/v1/jobs", job.to_string())
+            .await
+            .problem(422, "method-not-available");
+    }
     job["method"] = "hull_platse".into();
     let problem = service
         .post("/v1/jobs", job.to_string())

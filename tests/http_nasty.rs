@@ -242,7 +242,7 @@ async fn unknown_paths_and_methods_are_problems() {
         .await
         .problem(404, "not-found");
     service
-        .get("/v1/methods/cone_spline")
+        .get("/v1/methods/lofting")
         .await
         .problem(404, "method-not-found");
     service

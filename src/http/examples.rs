@@ -57,6 +57,14 @@ examples! {
                                     faired as one surface.";
     "bilge_grid", "fairing": "A measured grid of a side with two cells missing, faired within \
                               15 mm.";
+    "vault", "curvature_net": "A glass vault from 16 quads in any order: cyclide patches, conical \
+                               strips both ways, supports.";
+    "saddle", "curvature_net": "A saddle near a catenoid, its net cut askew: laid anew, with two \
+                                offsets.";
+    "tube", "curvature_net": "A bent duct, closed round: conical strips along its rings and an \
+                              inner skin.";
+    "bilge", "curvature_net": "The turn of a bilge whose radius grows forward: strakes as conical \
+                               strips, frames and longitudinals square to the skin.";
 }
 
 /// The examples there are.

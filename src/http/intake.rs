@@ -245,7 +245,10 @@ mod tests {
 
     #[test]
     fn unbuilt_methods_are_known() {
-        let error = read_job(br#"{"method":"cone_spline"}"#).unwrap_err();
-        assert_eq!(error.code, Code::MethodNotAvailable);
+        for name in UNBUILT {
+            let job = format!("{{\"method\":\"{name}\"}}");
+            let error = read_job(job.as_bytes()).unwrap_err();
+            assert_eq!(error.code, Code::MethodNotAvailable);
+        }
     }
 }

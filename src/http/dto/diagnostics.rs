@@ -1,5 +1,6 @@
 //! The answer of `…/diagnostics`.
 
+use super::curvature_net::CurvatureNetDiagnostics;
 use super::fairing::FairingDiagnostics;
 use super::hull_plates::HullPlatesDiagnostics;
 use super::job::{JobError, StatusWord, VerdictWord};
@@ -18,6 +19,8 @@ pub enum Figures {
     HullPlates(HullPlatesDiagnostics),
     /// Of `fairing`.
     Fairing(FairingDiagnostics),
+    /// Of `curvature_net`.
+    CurvatureNet(CurvatureNetDiagnostics),
 }
 
 /// What is known about how a job went, failed jobs included.

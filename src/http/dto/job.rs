@@ -1,5 +1,6 @@
 //! A job on the wire: the request as it is posted, the answer as it is told.
 
+use super::curvature_net::{CurvatureNetInput, CurvatureNetOptions};
 use super::fairing::{FairingInput, FairingOptions};
 use super::hull_plates::{HullPlatesInput, HullPlatesOptions};
 use crate::http::problem::FieldError;
@@ -24,6 +25,8 @@ pub enum JobRequest {
     HullPlates(HullPlatesJob),
     /// The fairest curve or surface within a tolerance of measured points.
     Fairing(FairingJob),
+    /// A surface whose patch borders are lines of curvature.
+    CurvatureNet(CurvatureNetJob),
 }
 
 macro_rules! job_of_a_method {
@@ -79,6 +82,15 @@ job_of_a_method!(
     FairingInput,
     FairingOptions,
     "A job for the fairest curve or surface within a tolerance of measured points."
+);
+job_of_a_method!(
+    CurvatureNetJob,
+    CurvatureNetMethod,
+    "curvature_net",
+    CurvatureNet,
+    CurvatureNetInput,
+    CurvatureNetOptions,
+    "A job for a surface whose patch borders are lines of curvature."
 );
 
 /// What a job may use.

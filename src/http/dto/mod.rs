@@ -3,11 +3,13 @@
 //! the JSON itself all come from these types.
 
 mod cad;
+pub mod curvature_net;
 pub mod curves;
 pub mod diagnostics;
 pub mod fairing;
 pub mod hull_plates;
 pub mod job;
+pub mod mesh;
 pub mod result;
 
 pub use curves::{Point, Spline, Surface};

@@ -1,5 +1,6 @@
 //! What the results of all methods have in common.
 
+use super::curvature_net::CurvatureNetResult;
 use super::fairing::FairingResult;
 use super::hull_plates::HullPlatesResult;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,8 @@ pub enum ResultDocument {
     HullPlates(HullPlatesResult),
     /// Of `fairing`.
     Fairing(FairingResult),
+    /// Of `curvature_net`.
+    CurvatureNet(CurvatureNetResult),
 }
 
 /// What every result says in words, read back from any of them.

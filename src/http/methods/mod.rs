@@ -3,6 +3,7 @@
 //! Everything else (intake, engine, results, the command line) goes through
 //! [`Method`] and knows no method by name.
 
+pub mod curvature_net;
 pub mod fairing;
 mod format;
 pub mod hull_plates;
@@ -22,10 +23,14 @@ use serde_json::{Map, Value};
 use utoipa::{PartialSchema, ToSchema};
 
 /// The methods that are built.
-pub const METHODS: &[&dyn Method] = &[&hull_plates::HullPlates, &fairing::Fairing];
+pub const METHODS: &[&dyn Method] = &[
+    &hull_plates::HullPlates,
+    &fairing::Fairing,
+    &curvature_net::CurvatureNet,
+];
 
 /// Methods that are announced but not built.
-pub const UNBUILT: &[&str] = &["cone_spline", "curvature_net"];
+pub const UNBUILT: &[&str] = &["cone_spline"];
 
 /// A method.
 pub trait Method: Sync {

@@ -36,9 +36,9 @@ const CLOSENESS: f64 = 0.1;
 /// their neighbours than by the start, which lets the net move as a whole.
 const FAIRNESS: f64 = 0.3;
 /// What is left of both from run to run.
-const FADING: f64 = 0.2;
+const FADING: f64 = 0.1;
 /// Runs before the last, on the mirrors alone.
-const RUNS: i32 = 4;
+const RUNS: i32 = 2;
 /// Steps of a run: closeness and fairness are linear in the unknowns and the
 /// mirrors nearly so.
 const STEPS: usize = 2;
