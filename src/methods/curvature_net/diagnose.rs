@@ -123,16 +123,28 @@ fn on_patch(surface: &Surface, edge: &Edge, t: f64) -> ([usize; 2], [f64; 2]) {
     (patch, share)
 }
 
+/// |torsion·length| at [`PLACES`] of every border.
+fn torsions(surface: &Surface, edges: &[Edge]) -> Vec<[f64; PLACES.len()]> {
+    let x = surface.unknowns();
+    let looks = edges
+        .par_iter()
+        .map(|edge| PLACES.map(|t| edge.jet(&x, t).torsion().value.abs()));
+    looks.collect()
+}
+
 impl BorderFigures {
+    /// Mean and largest |torsion·length| of a surface.
+    pub(super) fn torsion(surface: &Surface) -> [f64; 2] {
+        let looks = torsions(surface, &edges(surface));
+        let all = looks.as_flattened();
+        [mean(all), top(all.iter().copied()).1]
+    }
+
     /// Of a surface.
     #[must_use]
     pub fn of(surface: &Surface, mean_difference: f64) -> BorderFigures {
         let edges = edges(surface);
-        let x = surface.unknowns();
-        let looks: Vec<[f64; PLACES.len()]> = edges
-            .par_iter()
-            .map(|edge| PLACES.map(|t| edge.jet(&x, t).torsion().value.abs()))
-            .collect();
+        let looks = torsions(surface, &edges);
         let all = looks.as_flattened();
         let (worst, value) = top(all.iter().copied());
         let place =

@@ -20,11 +20,34 @@ pub(super) struct Task {
     /// Index in the request of each of them.
     pub(super) given: Vec<usize>,
     /// How often patches are split in four.
-    pub(super) levels: usize,
+    pub(super) levels: Levels,
+}
+
+/// How often patches are split in four.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Levels {
+    /// As often as asked.
+    Asked(usize),
+    /// As often as is usual, and once more where that is not fine enough and
+    /// leaves the net small enough.
+    Usual { count: usize, may_grow: bool },
+}
+
+impl Levels {
+    /// The number.
+    pub(super) fn count(self) -> usize {
+        match self {
+            Levels::Asked(count) | Levels::Usual { count, .. } => count,
+        }
+    }
 }
 
 /// More patches than these take minutes and say no more about a skin.
 pub const MOST_PATCHES: usize = 16_384;
+/// A net is split once more than usual up to so many.
+const GROWN_PATCHES: usize = 4096;
+/// A single quad split so often has the most patches.
+const MOST_LEVELS: usize = 7;
 /// Edges shorter than this share of the mean are mistakes.
 const SHORTEST_EDGE: f64 = 1e-6;
 /// Least sine of the angle between two sides at a corner: below, two lines of
@@ -250,7 +273,7 @@ fn from_grid(grid: &Grid) -> Result<Read, Vec<Issue>> {
 }
 
 impl Read {
-    fn in_unit_scale(self, levels: usize, issues: &mut Vec<Issue>) -> Option<Task> {
+    fn in_unit_scale(self, levels: Levels, issues: &mut Vec<Issue>) -> Option<Task> {
         let count = self.points.len() as f64;
         let middle = self
             .points
@@ -318,35 +341,37 @@ impl Read {
     }
 }
 
-fn levels(options: &Options, layout: Layout, issues: &mut Vec<Issue>) -> usize {
+fn levels(options: &Options, layout: Layout, issues: &mut Vec<Issue>) -> Levels {
     let [n, m] = layout.patch_counts();
-    let patches = n * m;
-    let asked = options.levels.unwrap_or_else(|| {
-        let enough = |level: &usize| patches << (2 * level) >= USUAL_PATCHES;
-        (0..=8).find(enough).unwrap_or(0)
-    });
-    let after = u32::try_from(2 * asked)
-        .ok()
-        .and_then(|s| 1_usize.checked_shl(s));
-    let after = after.and_then(|factor| patches.checked_mul(factor));
-    if after.is_none_or(|after| after > MOST_PATCHES) {
+    let patches = n.saturating_mul(m);
+    let after = |count: usize| {
+        let factor = u32::try_from(2 * count)
+            .ok()
+            .and_then(|s| 1_usize.checked_shl(s));
+        factor.map_or(usize::MAX, |factor| patches.saturating_mul(factor))
+    };
+    let levels = match options.levels {
+        Some(count) => Levels::Asked(count),
+        None => {
+            let count = (0..).find(|count| after(*count) >= USUAL_PATCHES);
+            let count = count.unwrap_or(0);
+            let may_grow = after(count + 1) <= GROWN_PATCHES;
+            Levels::Usual { count, may_grow }
+        }
+    };
+    if after(levels.count().min(MOST_LEVELS)) > MOST_PATCHES || levels.count() > MOST_LEVELS {
         let message = format!(
-            "{patches} quads split {asked} times are more than the {MOST_PATCHES} patches \
-             that a net may have"
+            "{patches} quads split {} times are more than the {MOST_PATCHES} patches that a net \
+             may have",
+            levels.count()
         );
-        let path = if options.levels.is_some() {
-            ["options", "levels"]
-        } else {
-            ["input", ""]
-        };
-        let path = if options.levels.is_some() {
-            &path[..]
-        } else {
-            &path[..1]
+        let path: &[&str] = match options.levels {
+            Some(_) => &["options", "levels"],
+            None => &["input"],
         };
         issues.push(issue(path, "too-many-patches", message, None));
     }
-    asked
+    levels
 }
 
 fn check_options(options: &Options) -> Vec<Issue> {

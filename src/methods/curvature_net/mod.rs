@@ -20,11 +20,15 @@
 //! * squareness: S_u·S_v / (|S_u| |S_v|) at every vertex;
 //! * closeness: the way D = S − S₀ of a vertex from the start S₀, along its
 //!   normal and across it;
-//! * fairness: the bending D_uu, D_vv, D_uv, D_uuv, D_uvv of the way.
+//! * fairness: the bending D_uu, D_vv, D_uv, D_uuv, D_uvv of the way;
+//! * lead: δ − σ (κ_u − κ_v) ≤ 0 at the corners of the patches, σ the sign in the
+//!   start: else the torsion would go by making the surface a sphere in places.
 //!
-//! The torsion's weight rises ×1, ×10, ×100, ×1000 on every level; then each
-//! patch is split in four, which changes nothing of the shape, until the net is
-//! as fine as asked.
+//! The torsion's weight rises ×1, ×10, ×100, ×1000 on every level, ×10⁴ on the
+//! last; then each patch is split in four, which changes nothing of the shape,
+//! until the net is as fine as asked. A net that is left with torsion is tried
+//! again with more bending, and split once more where the number of levels is
+//! free.
 //!
 //! # Sources
 //! Zheng & Bo, *Design of smooth surfaces with regular network of curvature
@@ -57,6 +61,8 @@ pub mod request;
 mod smooth;
 pub mod structure;
 pub mod surface;
+#[cfg(test)]
+mod tests;
 
 pub use input::MOST_PATCHES;
 pub use net::Net;

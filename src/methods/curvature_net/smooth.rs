@@ -51,7 +51,7 @@ pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitErr
         surface: lines.surface.mapped(task.size, &task.middle),
         start: lines.start.mapped(task.size, &task.middle),
         given: task.given,
-        levels: task.levels,
+        levels: lines.levels,
         steps: lines.steps,
     })
 }

@@ -3,9 +3,10 @@
 mod border;
 pub(super) mod edge;
 mod hold;
+mod lead;
 mod model;
 mod solve;
 mod start;
 
-pub use solve::Step;
 pub(super) use solve::solve;
+pub use solve::{REACHED, Step};

@@ -2,6 +2,7 @@
 
 use super::edge::{COLUMNS, Edge, edges, vector};
 use super::hold::Hold;
+use super::lead::Lead;
 use crate::methods::curvature_net::surface::{Surface, UNKNOWNS};
 use crate::solver::{Blocks, LeastSquares};
 use rayon::prelude::*;
@@ -19,23 +20,28 @@ pub(super) struct Weights {
     pub(super) bending: f64,
     /// Of the bending of its slope across a line.
     pub(super) cross_bending: f64,
+    /// Of the lead of one curvature.
+    pub(super) lead: f64,
 }
 
-/// Bending against closeness: waves of the way that are shorter than 2π √0.3,
-/// some three edges of the first net, cost more by their bending.
-const BENDING: f64 = 0.3;
-/// A net that slides within the surface keeps its shape, but loses its seams.
-const SLIDING: f64 = 1.0;
+/// A net that slides within the surface keeps its shape, but leaves its seams.
+const SLIDING: f64 = 0.5;
+
+/// Of a lost lead, its curvature by the mean edge of the first net. It need not
+/// grow with the torsion's, being asked of shapes that can have it.
+const LEAD: f64 = 3.0;
 
 impl Weights {
-    /// For a torsion's weight and the user's closeness.
-    pub(super) fn new(torsion: f64, closeness: f64) -> Self {
+    /// For a torsion's weight, the user's closeness and a bending's weight
+    /// relative to it.
+    pub(super) fn new(torsion: f64, closeness: f64, bending: f64) -> Self {
         Weights {
             torsion,
             close: closeness,
             sliding: SLIDING,
-            bending: BENDING * closeness,
-            cross_bending: BENDING * closeness,
+            bending: bending * closeness,
+            cross_bending: bending * closeness,
+            lead: LEAD,
         }
     }
 }
@@ -50,15 +56,17 @@ pub(super) struct Level<'a> {
     vertices: usize,
     edges: Vec<Edge>,
     hold: Hold<'a>,
+    lead: Lead,
 }
 
 impl<'a> Level<'a> {
-    pub(super) fn new(start: &'a Surface, weights: Weights) -> Self {
+    pub(super) fn new(start: &'a Surface, now: &Surface, weights: Weights) -> Self {
         Level {
             weights,
             vertices: start.vertices().len(),
             edges: edges(start),
             hold: Hold::new(start),
+            lead: Lead::new(start, now),
         }
     }
 
@@ -122,6 +130,7 @@ impl LeastSquares for Level<'_> {
             blocks.push(&found.residuals, &columns, &found.jacobian);
         }
         self.squareness(x, blocks);
+        self.lead.residuals(x, &self.weights, blocks);
         self.hold.closeness(x, &self.weights, blocks);
         self.hold.bending(x, &self.edges, &self.weights, blocks);
     }
@@ -155,10 +164,12 @@ mod tests {
     fn derivatives_agree_with_differences() {
         for closed in [[false, false], [true, false]] {
             let start = wavy(closed);
-            let problem = Level::new(&start, Weights::new(2.0, 1.5));
             let x: Vec<f64> = (start.unknowns().iter().enumerate())
-                .map(|(k, x)| x + 0.05 * (k as f64 * 1.7).sin())
+                .map(|(k, x)| x + 0.2 * (k as f64 * 1.7).sin())
                 .collect();
+            let now = start.with_unknowns(&x);
+            let problem = Level::new(&start, &now, Weights::new(2.0, 1.5, 0.7));
+            assert!(problem.lead.count() > 5);
             let worst = worst_disagreement(&problem, &x, 1e-6);
             assert!(worst.relative < 1e-7, "{worst:?}");
         }

@@ -13,8 +13,9 @@ const SWEEPS: usize = 60;
 pub fn through(layout: Layout, points: &[Point3<f64>]) -> Surface {
     let widths = [0, 1].map(|d| widths(layout, points, d));
     let values: Vec<Vector3<f64>> = points.iter().map(|p| p.coords).collect();
-    let du = slopes(layout, &values, &widths[0], 0);
-    let dv = slopes(layout, &values, &widths[1], 1);
+    let mut du = slopes(layout, &values, &widths[0], 0);
+    let mut dv = slopes(layout, &values, &widths[1], 1);
+    open_corners(layout, &values, [&mut du, &mut dv], &widths);
     let duv = slopes(layout, &dv, &widths[0], 0);
     let vertices = (0..values.len()).map(|k| Vertex {
         point: values[k],
@@ -23,6 +24,43 @@ pub fn through(layout: Layout, points: &[Point3<f64>]) -> Surface {
         duv: duv[k],
     });
     Surface::new(layout, widths.clone(), vertices.collect())
+}
+
+/// The lines may close in on each other at an end vertex by this much of what
+/// the sides of its quad leave open.
+const LEAST_OPENING: f64 = 0.7;
+
+/// Where the parabolas of the end pieces bend two lines of a sharp corner onto
+/// each other, they leave it along the sides of the quad instead.
+fn open_corners(
+    layout: Layout,
+    values: &[Vector3<f64>],
+    [du, dv]: [&mut [Vector3<f64>]; 2],
+    widths: &[Vec<f64>; 2],
+) {
+    let sine = |a: &Vector3<f64>, b: &Vector3<f64>| a.cross(b).norm() / (a.norm() * b.norm());
+    for vertex in 0..values.len() {
+        let at = [vertex / layout.columns, vertex % layout.columns];
+        let side = |d: usize| -> Option<Vector3<f64>> {
+            let last = layout.patch_counts()[d];
+            if layout.closed[d] || (at[d] != 0 && at[d] != last) {
+                return None;
+            }
+            let step = if d == 0 { layout.columns } else { 1 };
+            let first = if at[d] == 0 { vertex } else { vertex - step };
+            let width = widths[d][at[d].min(last - 1)];
+            Some((values[first + step] - values[first]) / width)
+        };
+        let sides = [side(0), side(1)];
+        let straight = [
+            sides[0].unwrap_or(du[vertex]),
+            sides[1].unwrap_or(dv[vertex]),
+        ];
+        let open = sine(&straight[0], &straight[1]);
+        if sine(&du[vertex], &dv[vertex]) < LEAST_OPENING * open {
+            [du[vertex], dv[vertex]] = straight;
+        }
+    }
 }
 
 /// The mean length of the edges of every row or column of patches.

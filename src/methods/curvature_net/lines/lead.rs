@@ -1,0 +1,213 @@
+//! Which of the two curvatures leads, and that it keeps its lead.
+//!
+//! A surface can lose its torsion by becoming as much bent one way as the
+//! other: on a sphere every line is a line of curvature. So at every corner of
+//! a patch the difference d = κ_u − κ_v shall keep its sign and a share of its
+//! size in the start: s = δ − σ d ≤ 0, as the smooth residual (s + √(s² + μ²))/2.
+//!
+//! Where the start hardly changes sign σ is that of the whole net, which then
+//! has no umbilic. Where both signs are at home in the start, some line between
+//! them has κ_u = κ_v whatever is done, and each side keeps its own.
+
+use super::edge::vector;
+use super::model::Weights;
+use crate::methods::curvature_net::bend::Bend;
+use crate::methods::curvature_net::surface::{Surface, UNKNOWNS, weights};
+use crate::solver::Blocks;
+use nalgebra::Vector3;
+
+/// A corner of a patch with its neighbours along u and v.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    /// Vertex, neighbour along u, neighbour along v.
+    vertices: [usize; 3],
+    /// Widths of the patch, negative where the neighbour lies before.
+    widths: [f64; 2],
+    /// Square root of the share of the parameters that it stands for.
+    root_area: f64,
+    sign: f64,
+    least: f64,
+}
+
+/// The corners that are asked to keep their lead.
+pub(super) struct Lead {
+    corners: Vec<Corner>,
+}
+
+/// A lead shall keep this share of its size in the start.
+const KEPT: f64 = 0.3;
+/// And at least this share of the mean over the net.
+const LEAST: f64 = 0.1;
+/// With less than this share of the whole difference the other sign is taken
+/// for an accident of the start.
+const ACCIDENT: f64 = 0.1;
+/// A start whose curvatures differ by less than this share of themselves is
+/// round like a sphere: no sign is at home there.
+const ROUND: f64 = 0.2;
+/// Corners with this much more than they must have are not watched.
+const SAFE: f64 = 2.0;
+/// Softness of the bound, relative to it.
+const SOFT: f64 = 0.1;
+
+/// κ_u and κ_v at a corner of a patch.
+fn curvatures(surface: &Surface, patch: [usize; 2], corner: [usize; 2]) -> [f64; 2] {
+    let bend = Bend::of(&surface.jet(patch, corner.map(|c| c as f64)));
+    bend.map_or([0.0, 0.0], |bend| [bend.along, bend.across])
+}
+
+const CORNERS: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+impl Lead {
+    /// For a level; only corners that are near losing it now.
+    pub(super) fn new(start: &Surface, now: &Surface) -> Self {
+        let layout = start.layout();
+        let all: Vec<([usize; 2], usize, [f64; 2])> = layout
+            .patches()
+            .flat_map(|(i, j)| (0..4).map(move |c| ([i, j], c)))
+            .map(|(patch, c)| (patch, c, curvatures(start, patch, CORNERS[c])))
+            .collect();
+        let Rule { common, least } = Rule::of(all.iter().map(|(.., k)| *k));
+        let asked = all.iter().filter_map(|(patch, c, k)| {
+            let d = k[0] - k[1];
+            let sign = common.unwrap_or(d.signum());
+            let bound = (KEPT * sign * d).max(least);
+            // A corner that itself lies between the signs has nothing to keep.
+            let at_home = common.is_some() || KEPT * d.abs() >= least;
+            let [u, v] = curvatures(now, *patch, CORNERS[*c]);
+            let at_risk = sign * (u - v) < SAFE * bound;
+            (at_home && at_risk).then(|| corner(start, *patch, *c, (sign, bound)))
+        });
+        Lead {
+            corners: asked.collect(),
+        }
+    }
+
+    /// How many corners are watched.
+    #[cfg(test)]
+    pub(super) fn count(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// A residual for every corner.
+    pub(super) fn residuals(&self, x: &[f64], w: &Weights, blocks: &mut Blocks) {
+        for corner in &self.corners {
+            corner.push(x, w.lead, blocks);
+        }
+    }
+}
+
+/// What is asked of a net.
+struct Rule {
+    /// The sign of d that all corners shall have, if it is one.
+    common: Option<f64>,
+    /// The least d of a corner.
+    least: f64,
+}
+
+impl Rule {
+    /// From the curvatures of the start.
+    fn of(all: impl Iterator<Item = [f64; 2]>) -> Rule {
+        let (mut up, mut down, mut bend, mut count) = (0.0, 0.0, 0.0, 0.0_f64);
+        for [u, v] in all {
+            up += (u - v).max(0.0);
+            down += (v - u).max(0.0);
+            bend += 0.5 * (u.abs() + v.abs());
+            count += 1.0;
+        }
+        let whole = up + down;
+        let is_accident = up.min(down) <= ACCIDENT * whole || whole <= ROUND * bend;
+        Rule {
+            common: is_accident.then_some(if up >= down { 1.0 } else { -1.0 }),
+            least: LEAST * whole.max(ROUND * bend) / count.max(1.0),
+        }
+    }
+}
+
+fn corner(surface: &Surface, patch: [usize; 2], c: usize, (sign, least): (f64, f64)) -> Corner {
+    let layout = surface.layout();
+    let here = CORNERS[c];
+    let vertex = |at: [usize; 2]| layout.vertex(patch[0] + at[0], patch[1] + at[1]);
+    let vertices = [
+        vertex(here),
+        vertex([1 - here[0], here[1]]),
+        vertex([here[0], 1 - here[1]]),
+    ];
+    let sizes = [0, 1].map(|d| surface.widths()[d][patch[d]]);
+    Corner {
+        vertices,
+        widths: [0, 1].map(|d| if here[d] == 0 { sizes[d] } else { -sizes[d] }),
+        root_area: (0.25 * sizes[0] * sizes[1]).sqrt(),
+        sign,
+        least,
+    }
+}
+
+/// Places of P, S_u, S_v among a vertex's unknowns.
+const SLOPES: [usize; 2] = [3, 6];
+
+impl Corner {
+    /// Second derivative along u or v at the vertex, with its weights on the
+    /// values of vertex and neighbour and on their slopes. A negative width
+    /// looks backwards, where slopes turn their sign and second derivatives
+    /// do not.
+    fn second(&self, x: &[f64], d: usize) -> (Vector3<f64>, [f64; 4]) {
+        let w = weights(0.0, self.widths[d], 2);
+        let at = [self.vertices[0], self.vertices[1 + d]].map(|v| v * UNKNOWNS);
+        let slope = SLOPES[d];
+        let value = vector(x, at[0]) * w[0]
+            + vector(x, at[1]) * w[1]
+            + vector(x, at[0] + slope) * w[2]
+            + vector(x, at[1] + slope) * w[3];
+        (value, w)
+    }
+
+    fn push(&self, x: &[f64], weight: f64, blocks: &mut Blocks) {
+        let at = self.vertices.map(|v| v * UNKNOWNS);
+        let slopes = SLOPES.map(|s| vector(x, at[0] + s));
+        let normal = slopes[0].cross(&slopes[1]);
+        let area = normal.norm();
+        let normal = normal / area;
+        // The gradient of d by (S_u, S_v), (S_uu, S_vv).
+        let mut by_slopes = [Vector3::zeros(); 2];
+        let mut d = 0.0;
+        let mut seconds = [([0.0; 4], Vector3::zeros()); 2];
+        for (k, sign) in [(0, 1.0), (1, -1.0)] {
+            let (second, w) = self.second(x, k);
+            let square = slopes[k].norm_squared();
+            let curvature = second.dot(&normal) / square;
+            d += sign * curvature;
+            by_slopes[k] -= slopes[k] * (sign * 2.0 * curvature / square);
+            // The normal turns with both slopes.
+            let tangential = (second - normal * second.dot(&normal)) * (sign / (square * area));
+            by_slopes[0] += slopes[1].cross(&tangential);
+            by_slopes[1] += tangential.cross(&slopes[0]);
+            seconds[k] = (w, normal * (sign / square));
+        }
+        let lack = self.least - self.sign * d;
+        let root = lack.hypot(SOFT * self.least);
+        let f = weight * self.root_area;
+        let slope = -0.5 * (1.0 + lack / root) * self.sign * f;
+        let mut jacobian = [0.0; 21];
+        let mut add = |place: usize, v: Vector3<f64>| {
+            for k in 0..3 {
+                jacobian[place + k] += slope * v[k];
+            }
+        };
+        add(3, by_slopes[0]);
+        add(6, by_slopes[1]);
+        for (k, (w, by)) in seconds.iter().enumerate() {
+            add(0, by * w[0]);
+            add(3 + 3 * k, by * w[2]);
+            add(9 + 6 * k, by * w[1]);
+            add(12 + 6 * k, by * w[3]);
+        }
+        let columns: [usize; 21] = std::array::from_fn(|c| match c {
+            0..9 => at[0] + c,
+            9..12 => at[1] + c - 9,
+            12..15 => at[1] + SLOPES[0] + c - 12,
+            15..18 => at[2] + c - 15,
+            _ => at[2] + SLOPES[1] + c - 18,
+        });
+        blocks.push(&[0.5 * f * (lack + root)], &columns, &jacobian);
+    }
+}

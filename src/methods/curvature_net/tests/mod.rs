@@ -1,0 +1,5 @@
+//! The smooth surface on models like those of the paper.
+
+mod input;
+mod models;
+mod nets;

@@ -1,0 +1,127 @@
+use super::models::{bilge, request, saddle, tube, vault};
+use crate::methods::FitError;
+use crate::methods::curvature_net::lines::REACHED;
+use crate::methods::curvature_net::{Smooth, smooth};
+use crate::solver::{Control, Stop, Unwatched};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+fn fitted(grid: crate::methods::curvature_net::request::Grid) -> Smooth {
+    smooth(&request(grid), &Unwatched).expect("a surface")
+}
+
+#[test]
+fn four_models_become_nets_of_curvature_lines_and_keep_their_shape() {
+    let models = [
+        ("vault", vault()),
+        ("saddle", saddle()),
+        ("tube", tube()),
+        ("bilge", bilge()),
+    ];
+    for (name, grid) in models {
+        let s = fitted(grid);
+        let [n, m] = s.surface.layout().patch_counts();
+        assert!(n * m >= 192, "{name}: {n} × {m}");
+        assert!(
+            s.borders.mean_torsion <= REACHED[0],
+            "{name}: {:?}",
+            s.borders.mean_torsion
+        );
+        assert!(
+            s.borders.max_torsion.value <= REACHED[1],
+            "{name}: {:?}",
+            s.borders.max_torsion
+        );
+        assert!(s.borders.max_normal_jump < 1e-12, "{name}");
+        assert!(s.umbilics.patches.is_empty(), "{name}: {:?}", s.umbilics);
+        assert!(s.shape.mean_move <= 0.5, "{name}: {:?}", s.shape);
+        assert!(s.shape.mean_turn_deg <= 3.0, "{name}: {:?}", s.shape);
+    }
+}
+
+#[test]
+fn lines_run_along_the_principal_directions() {
+    let s = fitted(vault());
+    // Computed from first and second derivatives of the surface alone.
+    for (i, j) in s.surface.layout().patches() {
+        let jet = s.surface.jet([i, j], [0.5, 0.0]);
+        let normal = jet.normal().expect("a normal");
+        let first = nalgebra::Matrix2::new(
+            jet.du.dot(&jet.du),
+            jet.du.dot(&jet.dv),
+            jet.du.dot(&jet.dv),
+            jet.dv.dot(&jet.dv),
+        );
+        let second = nalgebra::Matrix2::new(
+            jet.duu.dot(&normal),
+            jet.duv.dot(&normal),
+            jet.duv.dot(&normal),
+            jet.dvv.dot(&normal),
+        );
+        let shape = first.try_inverse().expect("regular") * second;
+        // The shape operator maps S_u to a multiple of itself.
+        assert!((shape[(1, 0)] / (shape[(0, 0)] - shape[(1, 1)])).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn a_net_of_curvature_lines_stays() {
+    // A torus's meridians and parallels.
+    let torus = super::models::grid([16, 12], [true, true], |u, v| {
+        let (u, v) = (std::f64::consts::TAU * u, std::f64::consts::TAU * v);
+        let r = 5.0 + 2.0 * v.cos();
+        [r * u.cos(), r * u.sin(), 2.0 * v.sin()]
+    });
+    let s = fitted(torus);
+    assert!(s.shape.mean_move < 0.01, "{:?}", s.shape);
+    assert!(s.shape.mean_turn_deg < 0.5, "{:?}", s.shape);
+}
+
+#[test]
+fn size_and_place_do_not_matter() {
+    let near = fitted(saddle());
+    let mut far = saddle();
+    far.points
+        .iter_mut()
+        .for_each(|p| *p = (*p * 1e3) + nalgebra::Vector3::new(4e6, -7e5, 30.0));
+    let far = fitted(far);
+    let mapped = |p: nalgebra::Vector3<f64>| p * 1e3 + nalgebra::Vector3::new(4e6, -7e5, 30.0);
+    for (a, b) in near.surface.vertices().iter().zip(far.surface.vertices()) {
+        assert!((mapped(a.point) - b.point).norm() < 1e-3);
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads").install(|| fitted(bilge()))
+    };
+    assert_eq!(run(1), run(3));
+}
+
+/// Stops after so many looks.
+struct Impatient {
+    looks: AtomicUsize,
+}
+
+impl Control for Impatient {
+    fn check(&self) -> Result<(), Stop> {
+        match self.looks.fetch_add(1, Ordering::Relaxed) {
+            0..5 => Ok(()),
+            _ => Err(Stop::Cancelled),
+        }
+    }
+    fn progress(&self, _: &'static str, percent: f64) {
+        assert!((0.0..=100.0).contains(&percent));
+    }
+}
+
+#[test]
+fn it_stops_when_told() {
+    let control = Impatient {
+        looks: AtomicUsize::new(0),
+    };
+    let stopped = smooth(&request(vault()), &control);
+    assert_eq!(stopped, Err(FitError::Stopped(Stop::Cancelled)));
+    assert!(control.looks.load(Ordering::Relaxed) < 10);
+}
