@@ -65,6 +65,10 @@ pub struct ShapeFigures {
     pub mean_turn_deg: f64,
     /// The largest.
     pub max_turn_deg: At,
+    /// The way of every vertex, in mean edges of the result.
+    pub moves: Vec<f64>,
+    /// The turn of every normal, degrees.
+    pub turns_deg: Vec<f64>,
 }
 
 /// Shares of a border where its torsion is looked at: other places than those
@@ -314,6 +318,8 @@ impl ShapeFigures {
             max_move: at_vertex(way, surface, moved),
             mean_turn_deg: mean(&turns),
             max_turn_deg: at_vertex(turn, surface, turned),
+            moves,
+            turns_deg: turns,
         }
     }
 }

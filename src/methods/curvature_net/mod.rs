@@ -57,6 +57,7 @@ pub mod lines;
 pub mod net;
 pub mod outcome;
 mod report;
+pub mod reasons;
 pub mod request;
 mod smooth;
 pub mod structure;

@@ -4,6 +4,7 @@
 use super::diagnose::{At, BorderFigures, ShapeFigures, UmbilicFigures};
 use super::input::Task;
 use super::lines::{Step, solve};
+use super::reasons::{Crossing, Moved, crossing, moved};
 use super::request::Request;
 use super::surface::Surface;
 use crate::methods::{Control, FitError};
@@ -27,6 +28,11 @@ pub struct Smooth {
     pub umbilics: UmbilicFigures,
     /// How far it is from the start.
     pub shape: ShapeFigures,
+    /// The vertices that went further than usual, with reasons.
+    pub moved: Vec<Moved>,
+    /// Where the start itself makes umbilics unavoidable: the curvatures pass
+    /// each other somewhere between these places.
+    pub crossing: Option<Crossing>,
     /// What every minimisation did.
     pub steps: Vec<Step>,
 }
@@ -44,12 +50,19 @@ pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitErr
     let umbilics = UmbilicFigures::of(&lines.surface);
     let borders = BorderFigures::of(&lines.surface, umbilics.mean_difference);
     let shape = ShapeFigures::of(&lines.surface, &lines.start);
+    let (size, middle) = (task.size, &task.middle);
+    let (surface, start) = (
+        lines.surface.mapped(size, middle),
+        lines.start.mapped(size, middle),
+    );
     Ok(Smooth {
+        moved: moved(&surface, &start, &shape, &task.given),
+        crossing: crossing(&start),
         borders: borders.in_user_scale(&task),
         umbilics: umbilics.in_user_scale(&task),
         shape: shape.in_user_scale(&task),
-        surface: lines.surface.mapped(task.size, &task.middle),
-        start: lines.start.mapped(task.size, &task.middle),
+        surface,
+        start,
         given: task.given,
         levels: lines.levels,
         steps: lines.steps,

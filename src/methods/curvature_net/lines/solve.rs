@@ -39,6 +39,8 @@ pub struct Step {
 /// Weights of the torsion on every level: small ones let the net find its way,
 /// large ones leave nothing of the torsion.
 const RISE: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
+/// From this level on the way is found, and only the last two of them are used.
+const FOUND: usize = 2;
 /// The weight that ends the last level.
 const LAST: f64 = 1e4;
 /// Weights of the bending of the way from the start, tried in turn. The first
@@ -143,8 +145,12 @@ impl Run<'_> {
     }
 
     fn level(&self, lines: &mut Lines, is_last: bool, [from, to]: [f64; 2]) -> Result<(), Stop> {
-        let count = RISE.len() + usize::from(is_last);
-        let weights = RISE.into_iter().chain(is_last.then_some(LAST));
+        let skipped = if lines.levels < FOUND { 0 } else { 2 };
+        let count = RISE.len() - skipped + usize::from(is_last);
+        let weights = RISE
+            .into_iter()
+            .skip(skipped)
+            .chain(is_last.then_some(LAST));
         for (at, torsion) in weights.enumerate() {
             let share = at as f64 / count as f64;
             self.control.progress("lines", from + (to - from) * share);

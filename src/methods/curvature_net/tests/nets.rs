@@ -1,6 +1,7 @@
 use super::models::{bilge, request, saddle, tube, vault};
 use crate::methods::FitError;
 use crate::methods::curvature_net::lines::REACHED;
+use crate::methods::curvature_net::reasons::Why;
 use crate::methods::curvature_net::{Smooth, smooth};
 use crate::solver::{Control, Stop, Unwatched};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -74,6 +75,36 @@ fn a_net_of_curvature_lines_stays() {
     let s = fitted(torus);
     assert!(s.shape.mean_move < 0.01, "{:?}", s.shape);
     assert!(s.shape.mean_turn_deg < 0.5, "{:?}", s.shape);
+}
+
+#[test]
+fn a_hypar_along_its_rulings_says_why_it_cannot_keep_its_shape() {
+    let hypar = super::models::grid([5, 5], [false, false], |u, v| {
+        let (x, y) = (6.0 * u - 3.0, 6.0 * v - 3.0);
+        [x, y, 0.08 * x * y]
+    });
+    let s = fitted(hypar);
+    assert!(s.borders.mean_torsion <= REACHED[0]);
+    assert!(s.shape.mean_turn_deg > 3.0);
+    let why = s.moved.iter().map(|m| m.why);
+    let off = why.filter(|why| matches!(why, Why::OffPrincipal(angle) if *angle > 40.0));
+    assert!(off.count() > 0, "{:?}", s.moved);
+    assert!(s.crossing.is_none());
+}
+
+#[test]
+fn a_wave_says_between_which_places_it_must_have_umbilics() {
+    let wave = super::models::grid([6, 6], [false, false], |u, v| {
+        [
+            6.0 * u,
+            6.0 * v,
+            0.5 * (5.0 * u + 1.0).sin() + 0.4 * (4.0 * v).cos(),
+        ]
+    });
+    let s = fitted(wave);
+    assert!(!s.umbilics.patches.is_empty());
+    let crossing = s.crossing.expect("both lead");
+    assert!(crossing.u.value > 0.1 && crossing.v.value > 0.1);
 }
 
 #[test]
