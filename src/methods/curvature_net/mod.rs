@@ -57,6 +57,7 @@ pub mod lines;
 pub mod net;
 pub mod outcome;
 mod report;
+mod paper;
 pub mod reasons;
 pub mod request;
 mod smooth;

@@ -4,8 +4,9 @@
 use super::diagnose::{At, BorderFigures, ShapeFigures, UmbilicFigures};
 use super::input::Task;
 use super::lines::{Step, solve};
+use super::paper;
 use super::reasons::{Crossing, Moved, crossing, moved};
-use super::request::Request;
+use super::request::{Request, Solver};
 use super::surface::Surface;
 use crate::methods::{Control, FitError};
 use nalgebra::Point3;
@@ -45,10 +46,19 @@ pub struct Smooth {
 pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitError> {
     control.progress("reading", 0.0);
     let task = Task::new(request)?;
-    let lines = solve(&task, request.options.closeness, control)?;
+    let (lines, paper) = match request.options.solver {
+        Solver::Own => (solve(&task, request.options.closeness, control)?, None),
+        Solver::Paper => {
+            let net = paper::solve(&task, control)?;
+            (net.lines.clone(), Some(net))
+        }
+    };
     control.check()?;
     let umbilics = UmbilicFigures::of(&lines.surface);
-    let borders = BorderFigures::of(&lines.surface, umbilics.mean_difference);
+    let mut borders = BorderFigures::of(&lines.surface, umbilics.mean_difference);
+    if let Some(net) = paper {
+        net.correct(&mut borders);
+    }
     let shape = ShapeFigures::of(&lines.surface, &lines.start);
     let (size, middle) = (task.size, &task.middle);
     let (surface, start) = (

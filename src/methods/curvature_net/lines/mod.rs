@@ -1,6 +1,6 @@
 //! The net of lines of curvature.
 
-mod border;
+pub(super) mod border;
 pub(super) mod edge;
 mod hold;
 mod lead;
@@ -8,5 +8,5 @@ mod model;
 mod solve;
 mod start;
 
-pub(super) use solve::solve;
+pub(super) use solve::{Lines, solve};
 pub use solve::{REACHED, Step};

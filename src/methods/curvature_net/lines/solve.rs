@@ -98,7 +98,19 @@ pub(in super::super) fn solve(
 }
 
 impl Lines {
-    fn split(&mut self) {
+    /// Before the first step.
+    pub(in super::super) fn start(task: &Task) -> Self {
+        let start = start::through(task.layout, &task.points);
+        Lines {
+            surface: start.clone(),
+            start,
+            levels: 0,
+            steps: Vec::new(),
+        }
+    }
+
+    /// Splits every patch in four.
+    pub(in super::super) fn split(&mut self) {
         self.start = self.start.split();
         self.surface = self.surface.split();
         self.levels += 1;
@@ -120,13 +132,7 @@ struct Run<'a> {
 
 impl Run<'_> {
     fn levels(&self, task: &Task, [from, to]: [f64; 2]) -> Result<Lines, Stop> {
-        let start = start::through(task.layout, &task.points);
-        let mut lines = Lines {
-            surface: start.clone(),
-            start,
-            levels: 0,
-            steps: Vec::new(),
-        };
+        let mut lines = Lines::start(task);
         let last = task.levels.count();
         // A level costs some four times the one before.
         let cost = |level: usize| 4_f64.powi(i32::try_from(level).unwrap_or(0));

@@ -49,9 +49,12 @@ fn a_mesh_gives_the_surface_of_its_grid() {
     assert_eq!(a.given, b.given);
 }
 
+/// What is done to a good mesh.
+type Change = Box<dyn Fn(&mut QuadMesh)>;
+
 #[test]
 fn bad_meshes_are_refused_by_name() {
-    let cases: Vec<(&str, &str, Box<dyn Fn(&mut QuadMesh)>)> = vec![
+    let cases: Vec<(&str, &str, Change)> = vec![
         (
             "not-a-quad",
             "faces/1",

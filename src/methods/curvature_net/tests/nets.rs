@@ -2,6 +2,7 @@ use super::models::{bilge, request, saddle, tube, vault};
 use crate::methods::FitError;
 use crate::methods::curvature_net::lines::REACHED;
 use crate::methods::curvature_net::reasons::Why;
+use crate::methods::curvature_net::request::Solver;
 use crate::methods::curvature_net::{Smooth, smooth};
 use crate::solver::{Control, Stop, Unwatched};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -119,6 +120,22 @@ fn size_and_place_do_not_matter() {
     for (a, b) in near.surface.vertices().iter().zip(far.surface.vertices()) {
         assert!((mapped(a.point) - b.point).norm() < 1e-3);
     }
+}
+
+#[test]
+fn the_papers_way_comes_as_near_as_it_says() {
+    let mut asked = request(tube());
+    asked.options.solver = Solver::Paper;
+    let paper = smooth(&asked, &Unwatched).expect("a surface");
+    let own = fitted(tube());
+    // Its mean was 1.5e-4 on its own models.
+    assert!(
+        (1e-5..5e-4).contains(&paper.borders.mean_torsion),
+        "{:?}",
+        paper.borders
+    );
+    assert!(own.borders.mean_torsion < 1e-2 * paper.borders.mean_torsion);
+    assert!(paper.borders.max_normal_jump > 1e-9);
 }
 
 #[test]
