@@ -22,8 +22,8 @@ mod leaves;
 mod search;
 
 use super::{BSplineCurve, Tolerance};
-pub(super) use leaves::Leaf;
-use leaves::{BoxTree, leaves_of};
+use leaves::leaves_of;
+pub(super) use leaves::{BoxTree, Leaf};
 use nalgebra::Point3;
 use search::Search;
 

@@ -187,7 +187,7 @@ where
 /// A complete binary tree of boxes over the leaves in order: node 1 is the
 /// root, node `k` has the children `2k` and `2k + 1`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct BoxTree {
+pub(in crate::geometry) struct BoxTree {
     boxes: Vec<Option<BoundingBox>>,
     first_leaf: usize,
     count: usize,
@@ -198,10 +198,16 @@ const STACK: usize = 2 * usize::BITS as usize;
 
 impl BoxTree {
     pub fn new(leaves: &[Leaf]) -> Self {
+        let boxes: Vec<BoundingBox> = leaves.iter().map(Leaf::bounding_box).collect();
+        Self::of(&boxes)
+    }
+
+    /// A tree over boxes; neighbours in the list should be neighbours in space.
+    pub fn of(leaves: &[BoundingBox]) -> Self {
         let first_leaf = leaves.len().next_power_of_two();
         let mut boxes = vec![None; 2 * first_leaf];
         for (slot, leaf) in boxes[first_leaf..].iter_mut().zip(leaves) {
-            *slot = Some(leaf.bounding_box());
+            *slot = Some(*leaf);
         }
         for k in (1..first_leaf).rev() {
             boxes[k] = match (boxes[2 * k], boxes[2 * k + 1]) {

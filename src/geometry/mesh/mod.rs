@@ -16,6 +16,7 @@ mod face;
 mod fault;
 mod manifold;
 mod measure;
+mod nearest;
 mod quad_grid;
 #[cfg(test)]
 mod tests;
@@ -24,6 +25,7 @@ mod topology;
 pub use face::Face;
 pub use fault::{MeshError, MeshFault};
 pub use manifold::Manifold;
+pub use nearest::{MeshIndex, Nearest};
 pub use quad_grid::{QuadGrid, QuadGridFault};
 pub use topology::Topology;
 

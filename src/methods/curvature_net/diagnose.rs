@@ -4,6 +4,7 @@
 use super::bend::Bend;
 use super::lines::edge::{Edge, edges};
 use super::surface::Surface;
+use super::target::Target;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
@@ -69,6 +70,15 @@ pub struct ShapeFigures {
     pub moves: Vec<f64>,
     /// The turn of every normal, degrees.
     pub turns_deg: Vec<f64>,
+}
+
+/// How far the vertices are from a target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TargetFigures {
+    /// Mean distance, a length.
+    pub mean_distance: f64,
+    /// The largest.
+    pub max_distance: At,
 }
 
 /// Shares of a border where its torsion is looked at: other places than those
@@ -320,6 +330,22 @@ impl ShapeFigures {
             max_turn_deg: at_vertex(turn, surface, turned),
             moves,
             turns_deg: turns,
+        }
+    }
+}
+
+impl TargetFigures {
+    /// Of a surface.
+    pub(super) fn of(surface: &Surface, target: &Target) -> TargetFigures {
+        let distances: Vec<f64> = surface
+            .vertices()
+            .par_iter()
+            .map(|k| (target.foot(&Point3::from(k.point)).point.coords - k.point).norm())
+            .collect();
+        let (furthest, distance) = top(distances.iter().copied());
+        TargetFigures {
+            mean_distance: mean(&distances),
+            max_distance: at_vertex(distance, surface, furthest),
         }
     }
 }

@@ -3,7 +3,8 @@
 //! deck in feet.
 
 use super::net::Layout;
-use super::request::{Grid, Input, Options, QuadMesh, Request, USUAL_PATCHES};
+use super::request::{self, Grid, Input, Options, QuadMesh, Request, USUAL_PATCHES};
+use super::target::{Fault, Target};
 use crate::geometry::mesh::{Face, Manifold, Mesh, MeshError, MeshFault, QuadGrid, QuadGridFault};
 use crate::methods::{FitError, Issue};
 use nalgebra::{Point3, Vector3};
@@ -21,6 +22,8 @@ pub(super) struct Task {
     pub(super) given: Vec<usize>,
     /// How often patches are split in four.
     pub(super) levels: Levels,
+    /// What the net is held to instead of these vertices.
+    pub(super) target: Option<Target>,
 }
 
 /// How often patches are split in four.
@@ -48,6 +51,8 @@ pub const MOST_PATCHES: usize = 16_384;
 const GROWN_PATCHES: usize = 4096;
 /// A single quad split so often has the most patches.
 const MOST_LEVELS: usize = 7;
+/// A target further away than this, in mean edges, is another place or unit.
+const FURTHEST_TARGET: f64 = 5.0;
 /// Edges shorter than this share of the mean are mistakes.
 const SHORTEST_EDGE: f64 = 1e-6;
 /// Least sine of the angle between two sides at a corner: below, two lines of
@@ -78,10 +83,51 @@ impl Task {
         };
         let levels = levels(&request.options, net.layout, &mut issues);
         let task = net.in_unit_scale(levels, &mut issues);
+        let target = request.options.target.as_ref();
         match task {
-            Some(task) if issues.is_empty() => Ok(task),
+            Some(mut task) if issues.is_empty() => {
+                target.map_or(Ok(()), |target| task.take_target(target))?;
+                Ok(task)
+            }
             _ => Err(FitError::Invalid(issues)),
         }
+    }
+
+    /// Lays the net onto a target.
+    fn take_target(&mut self, target: &request::Target) -> Result<(), FitError> {
+        let path = match target {
+            request::Target::Mesh(_) => ["options", "target", "mesh"],
+            request::Target::BSpline(_) => ["options", "target", "bspline"],
+        };
+        let refused = |found: Issue| FitError::Invalid(vec![found]);
+        let target = Target::new(target, self.size, &self.middle)
+            .map_err(|fault| refused(of_target_fault(path, &fault)))?;
+        for (point, given) in self.points.iter_mut().zip(&self.given) {
+            let foot = target.foot(point).point;
+            let distance = (foot - *point).norm();
+            if distance > FURTHEST_TARGET {
+                let message = format!(
+                    "the target is {:.3} away from vertex {given}, which is {distance:.1} mean \
+                     edges of the net",
+                    distance * self.size
+                );
+                let hint = Some("give the net and the target in one place and unit");
+                return Err(refused(issue(&path, "target-too-far", message, hint)));
+            }
+            *point = foot;
+        }
+        let laid = Read {
+            layout: self.layout,
+            points: self.points.clone(),
+            given: self.given.clone(),
+            path,
+        };
+        if let Some(quad) = laid.degenerate_quads(1.0).first() {
+            let message = format!("laid onto the target, {}", quad.message);
+            return Err(refused(issue(&path, "target-beside-net", message, None)));
+        }
+        self.target = Some(target);
+        Ok(())
     }
 
     /// A place in the user's scale.
@@ -177,6 +223,37 @@ fn of_mesh_error(error: &MeshError) -> Issue {
         MeshError::NotFinite { vertex } => indexed(VERTICES, *vertex, "not-finite", message),
         MeshError::OutOfRange { face, .. } => indexed(FACES, *face, "no-such-vertex", message),
         MeshError::RepeatedCorner { face, .. } => indexed(FACES, *face, "degenerate-quad", message),
+    }
+}
+
+fn of_target_fault(path: [&str; 3], fault: &Fault) -> Issue {
+    let in_list = |list: &str, index: usize, code, message: String| {
+        let mut found = issue(&path, code, message, None);
+        found.path.extend([list.to_owned(), index.to_string()]);
+        found
+    };
+    match fault {
+        Fault::Empty => issue(
+            &path,
+            "no-faces",
+            "the target has no faces".to_owned(),
+            None,
+        ),
+        Fault::Corners { face, corners } => {
+            let message = format!("face {face} has {corners} corners, not three or four");
+            in_list("faces", *face, "wrong-corners", message)
+        }
+        Fault::Mesh(error) => match error {
+            MeshError::NotFinite { vertex } => {
+                in_list("vertices", *vertex, "not-finite", error.to_string())
+            }
+            MeshError::OutOfRange { face, .. } => {
+                in_list("faces", *face, "no-such-vertex", error.to_string())
+            }
+            MeshError::RepeatedCorner { face, .. } => {
+                in_list("faces", *face, "repeated-corner", error.to_string())
+            }
+        },
     }
 }
 
@@ -299,6 +376,7 @@ impl Read {
             layout: self.layout,
             given: self.given,
             levels,
+            target: None,
         })
     }
 

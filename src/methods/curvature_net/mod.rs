@@ -19,7 +19,8 @@
 //!   ⇔ c is a line of curvature (do Carmo 1976, §3.3);
 //! * squareness: S_u·S_v / (|S_u| |S_v|) at every vertex;
 //! * closeness: the way D = S − S₀ of a vertex from the start S₀, along its
-//!   normal and across it;
+//!   normal and across it, or its distance from the tangent plane of a target
+//!   at the nearest point;
 //! * fairness: the bending D_uu, D_vv, D_uv, D_uuv, D_uvv of the way;
 //! * lead: δ − σ (κ_u − κ_v) ≤ 0 at the corners of the patches, σ the sign in the
 //!   start: else the torsion would go by making the surface a sphere in places.
@@ -56,13 +57,14 @@ mod input;
 pub mod lines;
 pub mod net;
 pub mod outcome;
-mod report;
 mod paper;
 pub mod reasons;
+mod report;
 pub mod request;
 mod smooth;
 pub mod structure;
 pub mod surface;
+mod target;
 #[cfg(test)]
 mod tests;
 

@@ -1,7 +1,7 @@
 //! Stage 1 as a whole: from the request to the smooth surface and what can be
 //! said about it, in the user's scale.
 
-use super::diagnose::{At, BorderFigures, ShapeFigures, UmbilicFigures};
+use super::diagnose::{At, BorderFigures, ShapeFigures, TargetFigures, UmbilicFigures};
 use super::input::Task;
 use super::lines::{Step, solve};
 use super::paper;
@@ -29,6 +29,8 @@ pub struct Smooth {
     pub umbilics: UmbilicFigures,
     /// How far it is from the start.
     pub shape: ShapeFigures,
+    /// How far it is from the target, where there is one.
+    pub target: Option<TargetFigures>,
     /// The vertices that went further than usual, with reasons.
     pub moved: Vec<Moved>,
     /// Where the start itself makes umbilics unavoidable: the curvatures pass
@@ -66,6 +68,10 @@ pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitErr
         lines.start.mapped(size, middle),
     );
     Ok(Smooth {
+        target: task
+            .target
+            .as_ref()
+            .map(|target| TargetFigures::of(&lines.surface, target).in_user_scale(&task)),
         moved: moved(&surface, &start, &shape, &task.given),
         crossing: crossing(&start),
         borders: borders.in_user_scale(&task),
@@ -107,6 +113,19 @@ impl UmbilicFigures {
             mean_difference: self.mean_difference / task.size,
             curvatures: curvatures.collect(),
             patches: self.patches,
+        }
+    }
+}
+
+impl TargetFigures {
+    fn in_user_scale(self, task: &Task) -> Self {
+        let max = self.max_distance.in_user_scale(task);
+        TargetFigures {
+            mean_distance: self.mean_distance * task.size,
+            max_distance: At {
+                value: max.value * task.size,
+                ..max
+            },
         }
     }
 }

@@ -185,7 +185,7 @@ impl From<&Outcome> for CurvatureNetDiagnostics {
 fn steps(outcome: &Outcome) -> Vec<StepResult> {
     let steps = outcome.smooth.steps.iter().map(|s| StepResult {
         level: s.level,
-        weight: s.weight,
+        weight: s.torsion,
         iterations: s.iterations,
         converged: s.converged,
     });

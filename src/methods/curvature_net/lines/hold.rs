@@ -10,12 +10,15 @@
 use super::edge::{Edge, strip, vector};
 use super::model::Weights;
 use crate::methods::curvature_net::surface::{Surface, UNKNOWNS, weights};
+use crate::methods::curvature_net::target::{Foot, Target};
 use crate::solver::Blocks;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
 
 /// The start and its numbers.
 pub(super) struct Hold<'a> {
     start: &'a Surface,
+    target: Option<&'a Target>,
     values: Vec<f64>,
     /// Unit normal and two tangents at every vertex.
     axes: Vec<[Vector3<f64>; 3]>,
@@ -28,7 +31,7 @@ pub(super) struct Hold<'a> {
 const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
 
 impl<'a> Hold<'a> {
-    pub(super) fn new(start: &'a Surface) -> Self {
+    pub(super) fn new(start: &'a Surface, target: Option<&'a Target>) -> Self {
         let columns = start.layout().columns;
         let axes = start.vertices().iter().map(|k| {
             let normal = k.du.cross(&k.dv).normalize();
@@ -38,6 +41,7 @@ impl<'a> Hold<'a> {
         let area = |v: usize| strip(start, 0, v / columns) * strip(start, 1, v % columns);
         Hold {
             start,
+            target,
             values: start.unknowns(),
             axes: axes.collect(),
             areas: (0..start.vertices().len()).map(area).collect(),
@@ -45,19 +49,32 @@ impl<'a> Hold<'a> {
     }
 
     /// The way of every vertex, along the normal of the start and across it,
-    /// and the change of its mixed derivative.
+    /// and the change of its mixed derivative. With a target the first is the
+    /// distance from its tangent plane at the nearest point.
     pub(super) fn closeness(&self, x: &[f64], w: &Weights, blocks: &mut Blocks) {
+        let feet: Option<Vec<Foot>> = self.target.map(|target| {
+            let vertices = 0..self.areas.len();
+            let foot = |v| target.foot(&Point3::from(vector(x, v * UNKNOWNS)));
+            vertices.into_par_iter().map(foot).collect()
+        });
         for (v, (axes, area)) in self.axes.iter().zip(&self.areas).enumerate() {
             let at = v * UNKNOWNS;
             let way = vector(x, at) - vector(&self.values, at);
             let f = w.close * area.sqrt();
+            let mut axes = *axes;
+            let mut along = axes[0].dot(&way);
+            if let Some(feet) = &feet {
+                axes[0] = feet[v].normal;
+                along = axes[0].dot(&(vector(x, at) - feet[v].point.coords));
+            }
             let weighted = [
                 axes[0] * f,
                 axes[1] * (f * w.sliding),
                 axes[2] * (f * w.sliding),
             ];
             let jacobian: [f64; 9] = std::array::from_fn(|k| weighted[k / 3][k % 3]);
-            let residuals = weighted.map(|axis| axis.dot(&way));
+            let [_, first, second] = weighted.map(|axis| axis.dot(&way));
+            let residuals = [along * f, first, second];
             blocks.push(&residuals, &[at, at + 1, at + 2], &jacobian);
             let at = at + MIXED;
             let change = vector(x, at) - vector(&self.values, at);

@@ -4,6 +4,7 @@ use super::edge::{COLUMNS, Edge, edges, vector};
 use super::hold::Hold;
 use super::lead::Lead;
 use crate::methods::curvature_net::surface::{Surface, UNKNOWNS};
+use crate::methods::curvature_net::target::Target;
 use crate::solver::{Blocks, LeastSquares};
 use rayon::prelude::*;
 
@@ -60,12 +61,17 @@ pub(super) struct Level<'a> {
 }
 
 impl<'a> Level<'a> {
-    pub(super) fn new(start: &'a Surface, now: &Surface, weights: Weights) -> Self {
+    pub(super) fn new(
+        start: &'a Surface,
+        now: &Surface,
+        target: Option<&'a Target>,
+        weights: Weights,
+    ) -> Self {
         Level {
             weights,
             vertices: start.vertices().len(),
             edges: edges(start),
-            hold: Hold::new(start),
+            hold: Hold::new(start, target),
             lead: Lead::new(start, now),
         }
     }
@@ -168,7 +174,7 @@ mod tests {
                 .map(|(k, x)| x + 0.2 * (k as f64 * 1.7).sin())
                 .collect();
             let now = start.with_unknowns(&x);
-            let problem = Level::new(&start, &now, Weights::new(2.0, 1.5, 0.7));
+            let problem = Level::new(&start, &now, None, Weights::new(2.0, 1.5, 0.7));
             assert!(problem.lead.count() > 5);
             let worst = worst_disagreement(&problem, &x, 1e-6);
             assert!(worst.relative < 1e-7, "{worst:?}");

@@ -5,8 +5,11 @@ use super::start;
 use crate::methods::curvature_net::diagnose::BorderFigures;
 use crate::methods::curvature_net::input::{Levels, Task};
 use crate::methods::curvature_net::surface::Surface;
+use crate::methods::curvature_net::target::Target;
 use crate::solver::levenberg_marquardt::{Settings, minimize};
 use crate::solver::{Control, NormalEquations, Stop};
+use nalgebra::Point3;
+use rayon::prelude::*;
 
 /// What the levels lead to, in unit scale.
 #[derive(Debug, Clone)]
@@ -72,6 +75,7 @@ pub(in super::super) fn solve(
         let run = Run {
             closeness,
             bending,
+            target: task.target.as_ref(),
             control,
         };
         let lines = run.levels(task, part)?;
@@ -88,7 +92,7 @@ pub(in super::super) fn solve(
     };
     if missed > 1.0 && matches!(task.levels, Levels::Usual { may_grow: true, .. }) {
         let mut finer = lines.clone();
-        finer.split();
+        finer.split(run.target);
         run.level(&mut finer, true, PARTS[2])?;
         if finer.missed() < missed {
             return Ok(finer);
@@ -109,9 +113,17 @@ impl Lines {
         }
     }
 
-    /// Splits every patch in four.
-    pub(in super::super) fn split(&mut self) {
+    /// Splits every patch in four, and lays the new start onto the target.
+    pub(in super::super) fn split(&mut self, target: Option<&Target>) {
         self.start = self.start.split();
+        if let Some(target) = target {
+            let feet = self.start.vertices().par_iter();
+            let feet: Vec<Point3<f64>> = feet
+                .map(|k| target.foot(&Point3::from(k.point)).point)
+                .collect();
+            let (layout, widths) = (self.start.layout(), self.start.widths().clone());
+            self.start = start::with_widths(layout, widths, &feet);
+        }
         self.surface = self.surface.split();
         self.levels += 1;
     }
@@ -127,6 +139,7 @@ impl Lines {
 struct Run<'a> {
     closeness: f64,
     bending: f64,
+    target: Option<&'a Target>,
     control: &'a dyn Control,
 }
 
@@ -140,7 +153,7 @@ impl Run<'_> {
         let mut done = 0.0;
         for level in 0..=last {
             if level > 0 {
-                lines.split();
+                lines.split(self.target);
             }
             let at = |done: f64| from + (to - from) * done / all;
             let part = [at(done), at(done + cost(level))];
@@ -168,7 +181,7 @@ impl Run<'_> {
 
     fn step(&self, lines: &mut Lines, torsion: f64) -> Result<Step, Stop> {
         let weights = Weights::new(torsion, self.closeness, self.bending);
-        let problem = Level::new(&lines.start, &lines.surface, weights);
+        let problem = Level::new(&lines.start, &lines.surface, self.target, weights);
         let mut x = lines.surface.unknowns();
         let settings = Settings {
             iterations: ITERATIONS,

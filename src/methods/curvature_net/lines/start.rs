@@ -10,20 +10,32 @@ use nalgebra::{Point3, Vector3};
 const SWEEPS: usize = 60;
 
 /// The surface through the points of a net.
-pub fn through(layout: Layout, points: &[Point3<f64>]) -> Surface {
+pub(super) fn through(layout: Layout, points: &[Point3<f64>]) -> Surface {
     let widths = [0, 1].map(|d| widths(layout, points, d));
+    with_widths(layout, widths, points)
+}
+
+/// The surface through the points of a net whose patches have these widths in
+/// the parameters.
+pub(super) fn with_widths(
+    layout: Layout,
+    widths: [Vec<f64>; 2],
+    points: &[Point3<f64>],
+) -> Surface {
     let values: Vec<Vector3<f64>> = points.iter().map(|p| p.coords).collect();
     let mut du = slopes(layout, &values, &widths[0], 0);
     let mut dv = slopes(layout, &values, &widths[1], 1);
     open_corners(layout, &values, [&mut du, &mut dv], &widths);
     let duv = slopes(layout, &dv, &widths[0], 0);
-    let vertices = (0..values.len()).map(|k| Vertex {
-        point: values[k],
-        du: du[k],
-        dv: dv[k],
-        duv: duv[k],
-    });
-    Surface::new(layout, widths.clone(), vertices.collect())
+    let vertices: Vec<Vertex> = (0..values.len())
+        .map(|k| Vertex {
+            point: values[k],
+            du: du[k],
+            dv: dv[k],
+            duv: duv[k],
+        })
+        .collect();
+    Surface::new(layout, widths, vertices)
 }
 
 /// The lines may close in on each other at an end vertex by this much of what

@@ -52,7 +52,7 @@ pub(super) fn solve(task: &Task, control: &dyn Control) -> Result<PaperNet, Stop
         control.progress("lines", 100.0 * level as f64 / (last + 1) as f64);
         if level > 0 {
             bezier = bezier.split();
-            lines.split();
+            lines.split(None);
         }
         let step = optimise(&mut bezier, level, control)?;
         lines.steps.push(step);

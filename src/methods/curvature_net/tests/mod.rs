@@ -3,3 +3,4 @@
 mod input;
 mod models;
 mod nets;
+mod targets;
