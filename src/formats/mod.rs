@@ -16,18 +16,20 @@
 //! | [`iges`] | surfaces and curves | older CAD |
 //! | [`offsets`] | a faired table of offsets (CSV), its lines plan (SVG) | loftsmen, print |
 //!
-//! One module reads: [`points_in`], lists of points and tables of offsets as
-//! yards write them. It tells how it read a file and guesses nothing that
-//! changes a number.
+//! Two modules read: [`points_in`] lists of points and tables of offsets as
+//! yards write them, [`mesh_in`] meshes. They tell how they read a file and
+//! guess nothing that changes a number.
 
 pub mod brep;
 pub mod csv;
 pub mod cyclides;
+mod excerpt;
 pub mod fair_curve;
 pub mod fair_points;
 pub mod fair_surface;
 pub mod iges;
 pub mod length_unit;
+pub mod mesh_in;
 pub mod obj;
 pub mod offsets;
 pub mod plates;

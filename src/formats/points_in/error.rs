@@ -1,5 +1,6 @@
 //! What can be wrong with a file of points, where, and what to do about it.
 
+use crate::formats::excerpt::shortened;
 use std::fmt;
 
 /// A place in the file that could not be read.
@@ -72,9 +73,6 @@ pub enum Fault {
     /// A table without a second row or column.
     TooSmallTable,
 }
-
-/// Letters of the file repeated in an error.
-const MOST_LETTERS: usize = 40;
 
 impl ReadError {
     /// An error at a cell, counted from 0 within its line.
@@ -192,14 +190,4 @@ impl fmt::Display for Fault {
             Fault::TooSmallTable => f.write_str("the table is too small"),
         }
     }
-}
-
-/// At most [`MOST_LETTERS`] of a text, on one line.
-fn shortened(text: &str) -> String {
-    let mut letters = text.chars().map(|c| if c.is_control() { ' ' } else { c });
-    let mut kept: String = letters.by_ref().take(MOST_LETTERS).collect();
-    if letters.next().is_some() {
-        kept.push('…');
-    }
-    kept
 }
