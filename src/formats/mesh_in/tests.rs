@@ -183,7 +183,7 @@ fn faults_of_stl_and_ply_name_their_place() {
     assert_eq!(fault(&stl), (Place::Byte(80), Fault::Promises));
 
     let many = PLY.replace("vertex 4", "vertex 5");
-    assert_eq!(obj_fault(&many), (Place::Line(21), Fault::EndsEarly));
+    assert_eq!(obj_fault(&many), (Place::Line(21), Fault::LeftOver));
     let range = PLY.replace("3 0 1 2 0.25", "3 0 1 9 0.25");
     assert_eq!(
         obj_fault(&range),

@@ -1,7 +1,7 @@
 //! Meshes on the wire.
 
 use super::curves::Point;
-use super::fairing::Index;
+use super::index::Index;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 

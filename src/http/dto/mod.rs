@@ -8,6 +8,7 @@ pub mod curves;
 pub mod diagnostics;
 pub mod fairing;
 pub mod hull_plates;
+pub mod index;
 pub mod job;
 pub mod mesh;
 pub mod result;

@@ -1,6 +1,7 @@
 //! `fairing` as the HTTP layer knows it.
 
-use super::{Fitted, Format, Header, Job, Method, Schemas, Words, json_line, misread};
+use super::file::input_for_file;
+use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
 use crate::formats::points_in::{self, Orientation};
 use crate::http::dto::Point;
 use crate::http::dto::fairing::{
@@ -113,20 +114,7 @@ impl Method for Fairing {
 
 /// Puts the file's points or table in the place of `input.file`.
 fn take_file(job: &mut Value, file: &File) -> Result<Vec<String>, FieldError> {
-    let input = job["input"].as_object_mut().ok_or_else(|| {
-        FieldError::new(
-            "/input",
-            "missing",
-            "the job has no \"input\", not even an empty one",
-        )
-    })?;
-    if let Some(name) = ["points", "grid", "offsets"]
-        .iter()
-        .find(|n| input.contains_key(**n))
-    {
-        let message = format!("\"{name}\" and a file are given; one is enough");
-        return Err(FieldError::new("/input", "ambiguous", message));
-    }
+    let input = input_for_file(job, &["points", "grid", "offsets"])?;
     let holds = input.remove("file").unwrap_or_else(|| "points".into());
     let holds: FileHolds = serde_json::from_value(holds).map_err(|_| {
         let message = "this must be one of points, offsets, offsets_transposed";
@@ -240,13 +228,7 @@ impl Job for ReadJob {
             other => other,
         })?;
         let document = FairingResult::new(&self.job, &self.request, &outcome, input_sha256);
-        Ok(Fitted {
-            result: json_line(&document)?,
-            diagnostics: json_line(&document.diagnostics)?,
-            within_limits: document.is_within_limits(),
-            message: document.summary.first().cloned().unwrap_or_default(),
-            warnings: document.warnings,
-        })
+        Fitted::of(&document)
     }
 }
 

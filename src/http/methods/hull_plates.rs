@@ -1,6 +1,6 @@
 //! `hull_plates` as the HTTP layer knows it.
 
-use super::{Fitted, Format, Header, Job, Method, Schemas, Words, json_line, misread};
+use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
 use crate::formats::plates::HullDrawing;
 use crate::formats::{csv, obj, svg};
 use crate::http::dto::Point;
@@ -137,14 +137,7 @@ impl PlatesJob {
         control: &dyn Control,
     ) -> Result<Fitted, FitError> {
         let outcome = fit(&self.request, control)?;
-        let document = HullPlatesResult::new(&self.job, input_sha256, &outcome);
-        Ok(Fitted {
-            result: json_line(&document)?,
-            diagnostics: json_line(&document.diagnostics)?,
-            within_limits: outcome.within_limits,
-            message: outcome.summary.first().cloned().unwrap_or_default(),
-            warnings: outcome.warnings,
-        })
+        Fitted::of(&HullPlatesResult::new(&self.job, input_sha256, &outcome))
     }
 }
 

@@ -5,6 +5,7 @@
 
 pub mod curvature_net;
 pub mod fairing;
+pub mod file;
 mod format;
 pub mod hull_plates;
 mod resource;
@@ -15,6 +16,7 @@ pub(super) use resource::routes;
 
 use super::dto::Point;
 use super::dto::job::{BoundingBox, Budget, Normalized, Units};
+use super::dto::result::Envelope;
 use super::problem::{ApiError, Code, FieldError};
 use super::schema_check::Rule;
 use super::upload::File;
@@ -112,6 +114,19 @@ pub struct Fitted {
     pub message: String,
     /// What the user should know about the input.
     pub warnings: Vec<String>,
+}
+
+impl Fitted {
+    /// What a result says, as bytes.
+    fn of(document: &impl Envelope) -> Result<Self, FitError> {
+        Ok(Fitted {
+            result: json_line(document)?,
+            diagnostics: json_line(document.figures())?,
+            within_limits: document.is_within_limits(),
+            message: document.summary().first().cloned().unwrap_or_default(),
+            warnings: document.warnings().to_vec(),
+        })
+    }
 }
 
 /// The schemas of what a method takes.

@@ -14,7 +14,7 @@ pub use result::CurvatureNetResult;
 pub use to_request::to_request;
 
 use super::curves::Point;
-use super::fairing::Index;
+use super::index::Index;
 use super::mesh::MeshInput;
 use crate::methods::curvature_net::request::{Direction, Options};
 use serde::{Deserialize, Serialize};

@@ -10,7 +10,6 @@ use crate::formats::fair_surface::{self, FairSurfaceDrawing, Isophotes};
 use crate::formats::offsets::{self, Cell, OffsetsDrawing, Orientation};
 use crate::geometry::BSplineCurve;
 use crate::http::dto::cad;
-use crate::http::dto::job::VerdictWord;
 use crate::http::methods::Format;
 use crate::http::problem::{ApiError, Code};
 use nalgebra::Vector3;
@@ -20,12 +19,6 @@ use std::collections::HashMap;
 const UNTITLED: &str = "Fairing";
 
 impl FairingResult {
-    /// Whether every point keeps its tolerance.
-    #[must_use]
-    pub fn is_within_limits(&self) -> bool {
-        self.verdict == VerdictWord::WithinLimits
-    }
-
     /// The result in another form.
     ///
     /// # Errors

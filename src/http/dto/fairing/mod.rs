@@ -10,11 +10,12 @@ mod table;
 mod to_request;
 
 pub use diagnostics::FairingDiagnostics;
-pub use points::{Index, IndexPair, MeasuredPoint};
+pub use points::MeasuredPoint;
 pub use result::FairingResult;
 pub use to_request::to_request;
 
 use super::curves::Point;
+use super::index::{Index, IndexPair};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 

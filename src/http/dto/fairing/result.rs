@@ -1,43 +1,29 @@
 //! The result of `fairing` on the wire.
 
 use super::super::curves::{NamedCurve, Point, Surface, finite};
-use super::super::job::{FairingJob, FairingMethod, Units, VerdictWord};
+use super::super::index::IndexPair;
+use super::super::job::{FairingJob, FairingMethod};
+use super::super::result::{Contents, result_of_a_method};
 use super::table::OffsetsResult;
-use super::{FairingDiagnostics, FairingOptions, IndexPair};
+use super::{FairingDiagnostics, FairingOptions};
 use crate::methods::fairing::{Outcome, Request, curve, offsets, surface};
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// The result of a `fairing` job. Lengths in `units`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct FairingResult {
-    /// The fitting method.
-    pub method: FairingMethod,
-    /// The job's label.
-    pub label: Option<String>,
-    /// The unit of all lengths here.
-    pub units: Units,
-    /// The version that made it.
-    pub engine_version: String,
-    /// SHA-256 of the job it was made from.
-    pub input_sha256: String,
-    /// Whether every point keeps its tolerance.
-    pub verdict: VerdictWord,
-    /// Sentences, the verdict first.
-    pub summary: Vec<String>,
-    /// What you should know about the input.
-    pub warnings: Vec<String>,
-    /// The fair surface; none for a curve. Control points indexed `[u][v]`.
-    pub surfaces: Vec<Surface>,
-    /// The fair curve; for a table of offsets its stations, waterlines and
-    /// buttocks; none for a surface.
-    pub curves: Vec<NamedCurve>,
-    /// What only this method gives.
-    pub method_specific: FairingSpecific,
-    /// All figures, measured on the delivered shape.
-    pub diagnostics: FairingDiagnostics,
-}
+result_of_a_method!(
+    FairingResult,
+    FairingJob,
+    FairingMethod,
+    FairingSpecific,
+    FairingDiagnostics,
+    about = "The result of a `fairing` job. Lengths in `units`.",
+    verdict = "Whether every point keeps its tolerance.",
+    summary = "Sentences, the verdict first.",
+    surfaces = "The fair surface; none for a curve. Control points indexed `[u][v]`.",
+    curves = "The fair curve; for a table of offsets its stations, waterlines and\nbuttocks; none for a surface.",
+    diagnostics = "All figures, measured on the delivered shape.",
+);
 
 /// What was faired.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -196,31 +182,23 @@ impl FairingResult {
         input_sha256: String,
     ) -> Self {
         let name = job.input.name.as_deref().unwrap_or("fair");
-        let (within, summary, warnings) = words(outcome);
-        let (surfaces, curves, specific) = match (request, outcome) {
+        let (within_limits, summary, warnings) = words(outcome);
+        let (surfaces, curves, method_specific) = match (request, outcome) {
             (_, Outcome::Curve(o)) => of_curve(o, name, job),
             (Request::Surface(r), Outcome::Surface(o)) => of_surface(o, name, job, r),
             (_, Outcome::Surface(o)) => of_surface_alone(o, name, job),
             (_, Outcome::Offsets(o)) => of_offsets(o, name, job),
         };
-        FairingResult {
-            method: job.method,
-            label: job.label.clone(),
-            units: job.units,
-            engine_version: crate::http::ENGINE_VERSION.to_owned(),
-            input_sha256,
-            verdict: if within {
-                VerdictWord::WithinLimits
-            } else {
-                VerdictWord::OutsideLimits
-            },
+        let contents = Contents {
+            within_limits,
             summary,
             warnings,
             surfaces,
             curves,
-            method_specific: specific,
+            method_specific,
             diagnostics: outcome.into(),
-        }
+        };
+        Self::of(job, input_sha256, contents)
     }
 }
 

@@ -2,7 +2,8 @@
 //! same job gives the same bytes.
 
 use super::super::curves::{NamedCurve, Point, Surface, finite};
-use super::super::job::{HullPlatesJob, HullPlatesMethod, Units, VerdictWord};
+use super::super::job::{HullPlatesJob, HullPlatesMethod};
+use super::super::result::{Contents, result_of_a_method};
 use super::{HullPlatesDiagnostics, HullPlatesOptions};
 use crate::methods::hull_plates::outcome::{
     Deviation, Fan, MovedPoint, Outcome, OutcomeProfile, Plate, Ruling,
@@ -10,35 +11,19 @@ use crate::methods::hull_plates::outcome::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// The result of a `hull_plates` job. Lengths in `units`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct HullPlatesResult {
-    /// The fitting method.
-    pub method: HullPlatesMethod,
-    /// The job's label.
-    pub label: Option<String>,
-    /// The unit of all lengths here.
-    pub units: Units,
-    /// The version that made it.
-    pub engine_version: String,
-    /// SHA-256 of the job it was made from.
-    pub input_sha256: String,
-    /// Whether every limit is kept.
-    pub verdict: VerdictWord,
-    /// One sentence for the job, then one a plate.
-    pub summary: Vec<String>,
-    /// What you should know about the input.
-    pub warnings: Vec<String>,
-    /// The plates: degree `[3, 1]`, `v = 0` on the first profile, `v = 1` on
-    /// the second; control points indexed `[u][v]`.
-    pub surfaces: Vec<Surface>,
-    /// The profiles as the plates use them; neighbours share theirs.
-    pub curves: Vec<NamedCurve>,
-    /// What only this method gives.
-    pub method_specific: HullPlatesSpecific,
-    /// All figures, measured on the delivered surfaces.
-    pub diagnostics: HullPlatesDiagnostics,
-}
+result_of_a_method!(
+    HullPlatesResult,
+    HullPlatesJob,
+    HullPlatesMethod,
+    HullPlatesSpecific,
+    HullPlatesDiagnostics,
+    about = "The result of a `hull_plates` job. Lengths in `units`.",
+    verdict = "Whether every limit is kept.",
+    summary = "One sentence for the job, then one a plate.",
+    surfaces = "The plates: degree `[3, 1]`, `v = 0` on the first profile, `v = 1` on\nthe second; control points indexed `[u][v]`.",
+    curves = "The profiles as the plates use them; neighbours share theirs.",
+    diagnostics = "All figures, measured on the delivered surfaces.",
+);
 
 /// What only `hull_plates` gives.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -142,17 +127,8 @@ impl HullPlatesResult {
     /// The result of a job out of its request and the method's outcome.
     #[must_use]
     pub fn new(job: &HullPlatesJob, input_sha256: String, outcome: &Outcome) -> Self {
-        HullPlatesResult {
-            method: job.method,
-            label: job.label.clone(),
-            units: job.units,
-            engine_version: crate::http::ENGINE_VERSION.to_owned(),
-            input_sha256,
-            verdict: if outcome.within_limits {
-                VerdictWord::WithinLimits
-            } else {
-                VerdictWord::OutsideLimits
-            },
+        let contents = Contents {
+            within_limits: outcome.within_limits,
             summary: outcome.summary.clone(),
             warnings: outcome.warnings.clone(),
             surfaces: (outcome.plates.iter())
@@ -167,7 +143,8 @@ impl HullPlatesResult {
                 profiles: outcome.profiles.iter().map(Into::into).collect(),
             },
             diagnostics: outcome.into(),
-        }
+        };
+        Self::of(job, input_sha256, contents)
     }
 }
 
