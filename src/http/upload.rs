@@ -1,6 +1,6 @@
 //! A job that comes with a file: `multipart/form-data` with the parts `job`
-//! (JSON) and `file` (the points as text). The two are made one job, as if the
-//! points had been typed into it: what is queued, stored and shown again is
+//! (JSON) and `file` (points as text, or a mesh). The two are made one job, as if
+//! the file had been typed into it: what is queued, stored and shown again is
 //! that job.
 
 use super::Api;

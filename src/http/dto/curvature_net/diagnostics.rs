@@ -1,7 +1,7 @@
 //! The figures of a `curvature_net` fit on the wire.
 
 use super::super::curves::Point;
-use super::super::fairing::IndexPair;
+use super::super::index::IndexPair;
 use super::specific::CertificateResult;
 use crate::methods::curvature_net::diagnose::At;
 use crate::methods::curvature_net::outcome::{CyclideFigures, Cyclides, Outcome, Spread};

@@ -2,7 +2,7 @@
 //! offsets, the bill.
 
 use super::super::curves::{Point, finite};
-use super::super::fairing::IndexPair;
+use super::super::index::IndexPair;
 use super::flat::FlatPoint;
 use super::{CurvatureNetOptions, DirectionWord};
 use crate::methods::curvature_net::cyclide::Certificate;

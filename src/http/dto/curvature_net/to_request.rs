@@ -68,7 +68,7 @@ fn polygons(mesh: &MeshInput, at: &str, units: Units, faults: &mut Vec<FieldErro
     QuadMesh {
         vertices: mesh.vertices.iter().map(|p| (*p).into()).collect(),
         faces: (mesh.faces.iter())
-            .map(|face| face.iter().map(|i| i.0).collect())
+            .map(|face| face.0.corners().to_vec())
             .collect(),
     }
 }
