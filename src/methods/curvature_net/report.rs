@@ -1,18 +1,10 @@
 //! The verdict, and the sentences that say it.
 
 use super::Smooth;
-use super::diagnose::At;
+use super::diagnose::{At, TargetFigures};
+use super::lines::REACHED;
 use super::outcome::{Cyclides, Outcome};
-
-/// |Torsion · length| that the borders of the smooth surface may have, mean
-/// and largest, radians: the paper reaches a mean of 1.5e-4.
-pub const MEAN_TORSION: f64 = 1e-6;
-/// The largest.
-pub const MAX_TORSION: f64 = 2e-5;
-/// Vertices that move further than this many edges on average, or normals that
-/// turn by more than [`USUAL_TURN_DEG`], are worth a sentence of their own.
-const USUAL_MOVE: f64 = 0.5;
-const USUAL_TURN_DEG: f64 = 3.0;
+use super::reasons::{Crossing, Moved, Why};
 
 /// Tangent planes of neighbours that differ by more than this, radians, do not
 /// come of residuals: the patches are exact, but one lies upside down.
@@ -30,7 +22,7 @@ pub(super) fn within_limits(smooth: &Smooth, cyclides: Option<&Cyclides>) -> boo
 
 fn is_net_of_curvature_lines(smooth: &Smooth) -> bool {
     let borders = &smooth.borders;
-    borders.mean_torsion <= MEAN_TORSION && borders.max_torsion.value <= MAX_TORSION
+    borders.mean_torsion <= REACHED[0] && borders.max_torsion.value <= REACHED[1]
 }
 
 /// All sentences.
@@ -42,6 +34,7 @@ pub(super) fn summary(outcome: &Outcome) -> Vec<String> {
         umbilics(smooth),
         shape(smooth),
     ];
+    sentences.extend(smooth.target.as_ref().map(target));
     if let Some(cyclides) = &outcome.cyclides {
         sentences.push(spline(cyclides));
         sentences.extend(cyclides.offsets.iter().map(offset));
@@ -146,29 +139,72 @@ fn umbilics(smooth: &Smooth) -> String {
         None => format!("No umbilic; {nearest}."),
         Some([i, j]) => format!(
             "Umbilics in {} patches, the first in row {i}, column {j}; {nearest}. There the \
-             direction of the lines is not told by the surface.",
-            u.patches.len()
+             direction of the lines is not told by the surface.{}",
+            u.patches.len(),
+            smooth.crossing.as_ref().map_or_else(String::new, crossing)
         ),
     }
 }
 
+fn crossing(c: &Crossing) -> String {
+    format!(
+        " The start asks for them: at {} its lines along u are bent more, by {}, at {} those along \
+         v, by {}, and somewhere between the two are equal.",
+        place(&c.u),
+        short(c.u.value),
+        place(&c.v),
+        short(c.v.value)
+    )
+}
+
 fn shape(smooth: &Smooth) -> String {
     let s = &smooth.shape;
-    let why = if s.mean_move > USUAL_MOVE || s.mean_turn_deg > USUAL_TURN_DEG {
-        ": lines of the start are far from lines of curvature there, and the net had to be laid \
-         anew"
-    } else {
-        ""
-    };
     format!(
         "Against the start vertices moved by {:.2} edges on average and {:.2} at most, at {}; \
-         normals turned by {:.2}° and {:.2}°, at {}{why}.",
+         normals turned by {:.2}° and {:.2}°, at {}{}.",
         s.mean_move,
         s.max_move.value,
         place(&s.max_move),
         s.mean_turn_deg,
         s.max_turn_deg.value,
-        place(&s.max_turn_deg)
+        place(&s.max_turn_deg),
+        why(&smooth.moved)
+    )
+}
+
+/// So many vertices are named in a sentence.
+const NAMED: usize = 3;
+
+/// Which vertices went furthest, and what about the start asked for it.
+fn why(moved: &[Moved]) -> String {
+    let one = |m: &Moved| {
+        let reason = match m.why {
+            Why::Skew(angle) => format!("the lines of the start cross at {angle:.0}° there"),
+            Why::OffPrincipal(angle) => {
+                format!("the lines of the start run at {angle:.0}° to its lines of curvature there")
+            }
+            Why::NearlyRound(_) => "the start is bent alike in all directions there".to_owned(),
+            Why::Neighbours => "it follows its neighbours".to_owned(),
+        };
+        format!(
+            "vertex {} (row {}, column {}) by {:.2} edges and {:.1}°: {reason}",
+            m.vertex, m.place[0], m.place[1], m.moved, m.turned_deg
+        )
+    };
+    let named: Vec<String> = moved.iter().take(NAMED).map(one).collect();
+    if named.is_empty() {
+        String::new()
+    } else {
+        format!("; furthest went {}", named.join("; "))
+    }
+}
+
+fn target(t: &TargetFigures) -> String {
+    format!(
+        "From the target vertices are {:.2e} away on average and {:.2e} at most, at {}.",
+        t.mean_distance,
+        t.max_distance.value,
+        place(&t.max_distance)
     )
 }
 
