@@ -42,7 +42,7 @@ pub struct Step {
 /// Weights of the torsion on every level: small ones let the net find its way,
 /// large ones leave nothing of the torsion.
 const RISE: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
-/// From this level on the way is found, and only the last two of them are used.
+/// From this level on the way is found, and only the last of them is used.
 const FOUND: usize = 2;
 /// The weight that ends the last level.
 const LAST: f64 = 1e4;
@@ -164,7 +164,11 @@ impl Run<'_> {
     }
 
     fn level(&self, lines: &mut Lines, is_last: bool, [from, to]: [f64; 2]) -> Result<(), Stop> {
-        let skipped = if lines.levels < FOUND { 0 } else { 2 };
+        let skipped = if lines.levels < FOUND {
+            0
+        } else {
+            RISE.len() - 1
+        };
         let count = RISE.len() - skipped + usize::from(is_last);
         let weights = RISE
             .into_iter()
