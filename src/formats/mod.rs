@@ -23,6 +23,7 @@
 pub mod brep;
 pub mod csv;
 pub mod cyclides;
+pub mod dxf;
 mod excerpt;
 pub mod fair_curve;
 pub mod fair_points;
