@@ -5,6 +5,7 @@ pub mod cone_spline;
 pub mod curvature_net;
 pub mod fairing;
 pub mod hull_plates;
+mod words;
 
 pub use crate::solver::{Control, Stop};
 

@@ -19,6 +19,7 @@ mod figures;
 mod flat;
 mod joins;
 mod outline;
+mod samples;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -30,6 +31,7 @@ use crate::geometry::SplineError;
 use crate::geometry::cone::{Frame, Strain};
 use nalgebra::{Point2, Point3};
 use outline::Outline;
+pub(super) use samples::Sample;
 
 /// Everything about a chain that a yard takes away.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +44,8 @@ pub(super) struct Sheets {
     pub joins: Vec<Join>,
     /// The flat pattern, in as few pieces as do not overlap.
     pub pattern: Vec<FlatPiece>,
+    /// Places all over the trimmed patches.
+    pub samples: Vec<Sample>,
 }
 
 /// What is known of the vertices on a patch.
@@ -91,6 +95,7 @@ pub(super) fn sheets(
         rulings,
         joins,
         pattern: laid.pieces,
+        samples: samples::of(&strip),
     })
 }
 

@@ -287,3 +287,14 @@ fn a_tube_of_more_than_a_half_turn_has_several_spans() {
     assert_eq!(surface.counts(), [9, 2]);
     assert!(surface.weights().unwrap().iter().all(|w| *w > 0.7));
 }
+
+#[test]
+fn samples_stand_for_the_whole_area() {
+    let sheets = made(&MIXED);
+    let whole: f64 = sheets.patches.iter().map(|p| p.area).sum();
+    let sampled: f64 = sheets.samples.iter().map(|s| s.area).sum();
+    assert!(
+        (sampled - whole).abs() < 1e-12 * whole.max(1.0),
+        "{sampled} {whole}"
+    );
+}

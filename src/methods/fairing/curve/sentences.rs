@@ -2,6 +2,7 @@
 
 use super::outcome::Outcome;
 use super::request::{Request, Solver};
+use crate::methods::words::short;
 
 /// The summary of an outcome.
 pub(super) fn summary(request: &Request, o: &Outcome) -> Vec<String> {
@@ -124,22 +125,5 @@ fn verdict(request: &Request, o: &Outcome) -> String {
             f.max_index,
             short(f.max)
         )
-    }
-}
-
-/// Four significant digits, without a tail of zeros.
-fn short(v: f64) -> String {
-    if v == 0.0 {
-        return "0".into();
-    }
-    let digits = 3 - v.abs().log10().floor() as i32;
-    if !(0..=9).contains(&digits) {
-        return format!("{v:.3e}");
-    }
-    let text = format!("{v:.*}", digits as usize);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
-    } else {
-        text
     }
 }
