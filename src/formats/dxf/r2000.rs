@@ -180,7 +180,7 @@ fn object(out: &mut Groups, kind: &str, owner: &str, layer: &str) {
 }
 
 fn write_entity(entity: &Entity, owners: &Owners, out: &mut Groups) {
-    let mut head = |out: &mut Groups, kind: &str, layer: &Layer, class: &str| {
+    let head = |out: &mut Groups, kind: &str, layer: &Layer, class: &str| {
         object(out, kind, &owners.model, layer.name());
         out.class(class);
     };

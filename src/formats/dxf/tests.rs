@@ -71,7 +71,7 @@ fn handles_are_used_once_and_lie_below_the_seed() {
     let mut seen = BTreeSet::new();
     for (_, handle) in all
         .iter()
-        .filter(|(code, v)| *code == 105 || (*code == 5 && *v != ""))
+        .filter(|(code, v)| *code == 105 || (*code == 5 && !v.is_empty()))
     {
         let number = u32::from_str_radix(handle, 16).unwrap();
         if number != seed {
