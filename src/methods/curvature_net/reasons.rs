@@ -151,8 +151,10 @@ pub(super) fn crossing(start: &Surface) -> Option<Crossing> {
     let middles = layout.patches().filter_map(|(i, j)| {
         let jet = start.jet([i, j], [0.5, 0.5]);
         let bend = Bend::of(&jet)?;
-        Some(At {
-            value: bend.along - bend.across,
+        let lead = bend.along - bend.across;
+        // Lines that run between the lines of curvature follow neither.
+        (lead.abs() > 2.0 * bend.twist.abs()).then_some(At {
+            value: lead,
             point: jet.point,
             place: [i as f64 + 0.5, j as f64 + 0.5],
         })

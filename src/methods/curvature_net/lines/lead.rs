@@ -10,7 +10,6 @@
 //! them has κ_u = κ_v whatever is done, and each side keeps its own.
 
 use super::edge::vector;
-use super::model::Weights;
 use crate::methods::curvature_net::bend::Bend;
 use crate::methods::curvature_net::surface::{Surface, UNKNOWNS, weights};
 use crate::solver::Blocks;
@@ -32,18 +31,25 @@ struct Corner {
 /// The corners that are asked to keep their lead.
 pub(super) struct Lead {
     corners: Vec<Corner>,
+    weight: f64,
 }
+
+/// Weights of a lost lead, its curvature by the mean edge of the first net,
+/// where all of the net shall lead alike and where each side keeps its own: the
+/// first can be had everywhere, the second not on the way from side to side.
+/// They need not grow with the torsion's.
+const WEIGHTS: [f64; 2] = [30.0, 3.0];
 
 /// A lead shall keep this share of its size in the start.
 const KEPT: f64 = 0.3;
-/// And at least this share of the mean over the net.
+/// And at least this share of the usual one of the net.
 const LEAST: f64 = 0.1;
 /// With less than this share of the whole difference the other sign is taken
 /// for an accident of the start.
 const ACCIDENT: f64 = 0.1;
-/// A start whose curvatures differ by less than this share of themselves is
-/// round like a sphere: no sign is at home there.
-const ROUND: f64 = 0.2;
+/// A start whose curvatures usually differ by less than this share of
+/// themselves is round like a sphere: no sign is at home there.
+const ROUND: f64 = 0.3;
 /// Corners with this much more than they must have are not watched.
 const SAFE: f64 = 2.0;
 /// Softness of the bound, relative to it.
@@ -78,6 +84,7 @@ impl Lead {
             (at_home && at_risk).then(|| corner(start, *patch, *c, (sign, bound)))
         });
         Lead {
+            weight: WEIGHTS[usize::from(common.is_none())],
             corners: asked.collect(),
         }
     }
@@ -89,9 +96,9 @@ impl Lead {
     }
 
     /// A residual for every corner.
-    pub(super) fn residuals(&self, x: &[f64], w: &Weights, blocks: &mut Blocks) {
+    pub(super) fn residuals(&self, x: &[f64], blocks: &mut Blocks) {
         for corner in &self.corners {
-            corner.push(x, w.lead, blocks);
+            corner.push(x, self.weight, blocks);
         }
     }
 }
@@ -107,20 +114,28 @@ struct Rule {
 impl Rule {
     /// From the curvatures of the start.
     fn of(all: impl Iterator<Item = [f64; 2]>) -> Rule {
-        let (mut up, mut down, mut bend, mut count) = (0.0, 0.0, 0.0, 0.0_f64);
-        for [u, v] in all {
+        let all: Vec<[f64; 2]> = all.collect();
+        let (mut up, mut down) = (0.0, 0.0);
+        for [u, v] in &all {
             up += (u - v).max(0.0);
             down += (v - u).max(0.0);
-            bend += 0.5 * (u.abs() + v.abs());
-            count += 1.0;
         }
-        let whole = up + down;
-        let is_accident = up.min(down) <= ACCIDENT * whole || whole <= ROUND * bend;
+        // A few wild corners of a coarse start say nothing of its shape.
+        let difference = median(all.iter().map(|[u, v]| (u - v).abs()));
+        let bend = median(all.iter().map(|[u, v]| 0.5 * (u.abs() + v.abs())));
+        let is_accident = up.min(down) <= ACCIDENT * (up + down) || difference <= ROUND * bend;
         Rule {
             common: is_accident.then_some(if up >= down { 1.0 } else { -1.0 }),
-            least: LEAST * whole.max(ROUND * bend) / count.max(1.0),
+            least: LEAST * difference.max(ROUND * bend),
         }
     }
+}
+
+/// The middle one of some values; 0 of none.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn corner(surface: &Surface, patch: [usize; 2], c: usize, (sign, least): (f64, f64)) -> Corner {
