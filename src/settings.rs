@@ -277,6 +277,8 @@ pub enum FileFormat {
     Step,
     /// Surfaces and curves for older CAD.
     Igs,
+    /// Flat patterns for the cutting table.
+    Dxf,
 }
 
 /// Which service to ask.

@@ -111,6 +111,7 @@ fn format_of(format: FileFormat) -> Format {
         FileFormat::Svg => Format::Svg,
         FileFormat::Step => Format::Step,
         FileFormat::Igs => Format::Igs,
+        FileFormat::Dxf => Format::Dxf,
     }
 }
 

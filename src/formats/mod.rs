@@ -11,9 +11,10 @@
 //! | [`svg`] | the lines plan with the rulings coloured by twist | print, README, browser |
 //! | [`fair_curve`] | corrections of a faired curve (CSV), its plot (SVG) | loftsmen, print |
 //! | [`fair_surface`] | a trimmed mesh (OBJ), corrections (CSV), isophotes (SVG) | CAD, loftsmen, print |
-//! | [`cyclides`] | a net of patches (OBJ), the bill of its arcs (CSV), the flat patterns of its strips (SVG) | CAD, yards, cutting |
+//! | [`cyclides`] | a net of patches (OBJ), the bill of its arcs (CSV) | CAD, yards |
 //! | [`step`] | surfaces sewn along shared edges, curves beside them | CAD |
 //! | [`iges`] | surfaces and curves | older CAD |
+//! | [`patterns`] | flat patterns (SVG), the same for the cutting table ([`dxf`]) | yards |
 //! | [`offsets`] | a faired table of offsets (CSV), its lines plan (SVG) | loftsmen, print |
 //!
 //! Two modules read: [`points_in`] lists of points and tables of offsets as
@@ -33,6 +34,7 @@ pub mod length_unit;
 pub mod mesh_in;
 pub mod obj;
 pub mod offsets;
+pub mod patterns;
 pub mod plates;
 pub mod points_in;
 pub mod step;

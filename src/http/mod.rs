@@ -121,6 +121,7 @@ fn all_routes() -> OpenApiRouter<Api> {
         .routes(routes!(results::result_svg))
         .routes(routes!(results::result_step))
         .routes(routes!(results::result_igs))
+        .routes(routes!(results::result_dxf))
         .routes(routes!(results::diagnostics))
         .merge(methods::routes())
         .merge(examples::routes())

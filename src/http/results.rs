@@ -122,7 +122,7 @@ async fn written(job: &Job, format: Format, result: Bytes) -> Result<Bytes, ApiE
             content(
                 (ResultDocument = "application/json"),
                 (String = "model/obj"), (String = "text/csv"), (String = "image/svg+xml"),
-                (String = "model/step"), (String = "model/iges"),
+                (String = "model/step"), (String = "model/iges"), (String = "image/vnd.dxf"),
             ),
             headers(("ETag" = String, description = "SHA-256 of the bytes"))),
         (status = 206, description = "The bytes that `Range` asked for",
@@ -178,7 +178,9 @@ async fn file(
             header::CONTENT_SECURITY_POLICY,
             "default-src 'none'; style-src 'unsafe-inline'; sandbox",
         ),
-        Format::Json | Format::Obj | Format::Csv | Format::Step | Format::Igs => response,
+        Format::Json | Format::Obj | Format::Csv | Format::Step | Format::Igs | Format::Dxf => {
+            response
+        }
     })
 }
 
@@ -234,6 +236,8 @@ result_files! {
         "model/step", "The surfaces for CAD, sewn along shared edges, with the curves beside them";
     result_igs, "/v1/jobs/{id}/result.igs", "get_result_igs", Format::Igs, String,
         "model/iges", "The surfaces and curves for older CAD";
+    result_dxf, "/v1/jobs/{id}/result.dxf", "get_result_dxf", Format::Dxf, String,
+        "image/vnd.dxf", "The flat patterns for the cutting table, true to size";
 }
 
 /// How a job went

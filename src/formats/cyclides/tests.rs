@@ -1,8 +1,8 @@
 //! The files of a small net.
 
-use super::{MemberLine, NetDrawing, PatchSheet, Pattern};
+use super::{MemberLine, NetDrawing, PatchSheet};
 use crate::geometry::{CyclideCorner, CyclidePatch};
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 
 /// A ring of a torus, n patches round and two across.
@@ -32,19 +32,9 @@ fn ring(n: usize) -> PatchSheet {
 }
 
 fn drawing() -> NetDrawing {
-    let square = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (0.0, 1.0)];
-    let corner = |(x, y)| Point2::new(x, y);
-    let pattern = |name: &str| Pattern {
-        name: name.into(),
-        kind: "Strips along u".into(),
-        outline: square.map(corner).to_vec(),
-        line: vec![Point2::new(0.0, 0.5), Point2::new(4.0, 0.5)],
-        rulings: vec![[Point2::new(2.0, 0.0), Point2::new(2.0, 1.0)]],
-    };
     NetDrawing {
         title: "ring".into(),
         units: "m".into(),
-        unit_mm: 1000.0,
         sheets: vec![ring(7)],
         members: vec![MemberLine {
             line: "u0".into(),
@@ -54,9 +44,7 @@ fn drawing() -> NetDrawing {
             angle_deg: 0.0,
             torsion_deg: 0.0,
         }],
-        patterns: (0..9).map(|i| pattern(&format!("u{i}"))).collect(),
         verdict: "within_limits".into(),
-        summary: vec!["Good.".into()],
     }
 }
 
@@ -128,17 +116,4 @@ fn the_bill_has_a_row_an_arc() {
     let expected = "line,from_row,from_column,to_row,to_column,radius (m),length (m),\
         angle (deg),node_torsion (deg)\r\nu0,0,0,1,0,,2.5,0,0\r\n";
     assert_eq!(super::bill_of_quantities(&drawing()), expected);
-}
-
-#[test]
-fn the_pattern_sheet_names_every_pattern_and_its_scale() {
-    let page = super::pattern_sheet(&drawing());
-    for i in 0..9 {
-        assert!(page.contains(&format!(">u{i}<")));
-    }
-    assert!(page.contains("1 : "), "{page}");
-    assert_eq!(page.matches("Strips along u").count(), 1);
-    let mut empty = drawing();
-    empty.patterns.clear();
-    assert!(super::pattern_sheet(&empty).contains("no flat patterns"));
 }

@@ -7,7 +7,7 @@ use super::legend;
 use super::page::{self, Words};
 use super::text;
 use super::views::{GREY, INK};
-use crate::formats::cyclides::{NetDrawing, Pattern};
+use crate::formats::patterns::{Pattern, PatternSheet};
 use nalgebra::{Matrix2, Point2, SymmetricEigen, Vector2};
 
 /// Height of the names' type, mm.
@@ -22,11 +22,11 @@ const LONGEST: f64 = 130.0;
 const RULING: &str = "#7aa5c9";
 
 /// The whole page.
-pub(in crate::formats) fn page(drawing: &NetDrawing) -> String {
+pub(in crate::formats) fn page(drawing: &PatternSheet) -> String {
     let mut canvas = Canvas::default();
     let words = Words {
         title: &drawing.title,
-        units: &drawing.units,
+        units: &drawing.unit_name,
         verdict: &drawing.verdict,
         good: drawing.verdict != "outside_limits",
         summary: &drawing.summary,
@@ -36,14 +36,14 @@ pub(in crate::formats) fn page(drawing: &NetDrawing) -> String {
         .map(|p| (p, Laid::of(p)))
         .collect();
     if laid.is_empty() {
-        let none = "There are no flat patterns: ask for \"strips\" or \"supports\".";
-        canvas.text([MARGIN, y], plain(INK), none);
+        canvas.text([MARGIN, y], plain(INK), drawing.none);
         y += 8.0;
     } else {
-        let denominator = scale_denominator(&laid, drawing.unit_mm);
-        let scale = drawing.unit_mm / denominator;
+        let unit_mm = 1000.0 * drawing.units.metres();
+        let denominator = scale_denominator(&laid, unit_mm);
+        let scale = unit_mm / denominator;
         let remark = format!("flat patterns, 1 : {denominator}");
-        legend::scale_bar(&mut canvas, &drawing.units, [y, scale], &remark);
+        legend::scale_bar(&mut canvas, &drawing.unit_name, [y, scale], &remark);
         y = shelves(&mut canvas, &laid, scale, y + 14.0);
     }
     y = page::sentences(&mut canvas, &words, y + 6.0);
@@ -192,4 +192,7 @@ fn draw(canvas: &mut Canvas, pattern: &Pattern, laid: &Laid, (corner, scale): (S
     let closed = pattern.outline.iter().chain(pattern.outline.first());
     let outline: Vec<Spot> = closed.map(map).collect();
     canvas.polyline(&outline, stroke(INK, 0.25));
+    for (at, label) in &pattern.labels {
+        canvas.text(map(at), plain(INK), label);
+    }
 }

@@ -60,7 +60,7 @@ pub(super) fn write(model: &SheetModel, format: Format) -> Result<String, ApiErr
     match format {
         Format::Step => Ok(step::write(model)),
         Format::Igs => Ok(iges::write(model)),
-        Format::Json | Format::Obj | Format::Csv | Format::Svg => {
+        Format::Json | Format::Obj | Format::Csv | Format::Svg | Format::Dxf => {
             Err(ApiError::internal(&"no form of CAD"))
         }
     }

@@ -90,6 +90,7 @@ impl Method for CurvatureNet {
             Format::Svg,
             Format::Step,
             Format::Igs,
+            Format::Dxf,
         ]
     }
 

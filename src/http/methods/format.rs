@@ -15,17 +15,20 @@ pub enum Format {
     Step,
     /// Surfaces and curves for older CAD: IGES 5.3.
     Igs,
+    /// Flat patterns for the cutting table: DXF R2000.
+    Dxf,
 }
 
 impl Format {
     /// All forms.
-    pub const ALL: [Format; 6] = [
+    pub const ALL: [Format; 7] = [
         Format::Json,
         Format::Obj,
         Format::Csv,
         Format::Svg,
         Format::Step,
         Format::Igs,
+        Format::Dxf,
     ];
 
     /// The file name's ending.
@@ -38,6 +41,7 @@ impl Format {
             Format::Svg => "svg",
             Format::Step => "step",
             Format::Igs => "igs",
+            Format::Dxf => "dxf",
         }
     }
 
@@ -51,6 +55,7 @@ impl Format {
             Format::Svg => "image/svg+xml",
             Format::Step => "model/step",
             Format::Igs => "model/iges",
+            Format::Dxf => "image/vnd.dxf",
         }
     }
 

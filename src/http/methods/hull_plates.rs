@@ -100,7 +100,7 @@ impl Method for HullPlates {
             Format::Csv => Ok(csv::ruling_table(&drawing)),
             Format::Svg => Ok(svg::lines_plan(&drawing)),
             Format::Step | Format::Igs => document.write_cad(format),
-            Format::Json => Err(ApiError::internal(&"JSON is what is stored")),
+            Format::Json | Format::Dxf => Err(ApiError::internal(&"no form to be written")),
         }
     }
 }

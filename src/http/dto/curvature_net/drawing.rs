@@ -5,7 +5,9 @@ use super::DirectionWord;
 use super::result::{CYCLIDE, OFFSET, SMOOTH};
 use super::specific::{MemberResult, SheetResult};
 use crate::formats::brep::SheetModel;
-use crate::formats::cyclides::{self, MemberLine, NetDrawing, PatchSheet, Pattern};
+use crate::formats::cyclides::{self, MemberLine, NetDrawing, PatchSheet};
+use crate::formats::dxf::Version;
+use crate::formats::patterns::{self, Pattern, PatternSheet};
 use crate::geometry::{Axis, BSplineSurface};
 use crate::http::dto::cad;
 use crate::http::dto::curves::Surface;
@@ -28,7 +30,11 @@ impl CurvatureNetResult {
             Format::Json => Err(ApiError::internal(&"JSON is what is stored")),
             Format::Obj => Ok(cyclides::mesh(&self.drawing(self.sheets()?))),
             Format::Csv => Ok(cyclides::bill_of_quantities(&self.drawing(Vec::new()))),
-            Format::Svg => Ok(cyclides::pattern_sheet(&self.drawing(Vec::new()))),
+            Format::Svg => Ok(patterns::page(&self.pattern_sheet())),
+            Format::Dxf => Ok(patterns::cutting_drawing(
+                &self.pattern_sheet(),
+                Version::R2000,
+            )),
             Format::Step | Format::Igs => cad::write(&self.model()?, format),
         }
     }
@@ -59,7 +65,6 @@ impl CurvatureNetResult {
         NetDrawing {
             title: self.title(),
             units: self.units.to_string(),
-            unit_mm: self.units.metres() * 1000.0,
             sheets,
             members: self
                 .method_specific
@@ -67,7 +72,17 @@ impl CurvatureNetResult {
                 .iter()
                 .map(Into::into)
                 .collect(),
+            verdict: self.verdict.to_string(),
+        }
+    }
+
+    fn pattern_sheet(&self) -> PatternSheet {
+        PatternSheet {
+            title: self.title(),
+            unit_name: self.units.to_string(),
+            units: self.units.into(),
             patterns: self.patterns(),
+            none: "There are no flat patterns: ask for \"strips\" or \"supports\".",
             verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
         }
@@ -156,6 +171,7 @@ fn pattern(name: String, kind: String, sheet: &SheetResult) -> Pattern {
             .collect(),
         line: sheet.line.iter().map(|p| (*p).into()).collect(),
         rulings: pairs.map(|(r, l)| [(*r).into(), (*l).into()]).collect(),
+        labels: Vec::new(),
     }
 }
 

@@ -26,7 +26,7 @@ impl FairingResult {
     /// splines are none.
     pub fn write(&self, format: Format) -> Result<String, ApiError> {
         match (self.method_specific.kind, format) {
-            (_, Format::Json) => Err(ApiError::internal(&"JSON is what is stored")),
+            (_, Format::Json | Format::Dxf) => Err(ApiError::internal(&"no form to be written")),
             (_, Format::Step | Format::Igs) => cad::write(&self.sheet_model()?, format),
             (FairedKind::Curve, Format::Obj) => {
                 let detail = "a curve has no mesh; there are json, csv, svg, step, igs";
