@@ -2,12 +2,17 @@
 //! edge 1, so that every weight means the same on a dome in millimetres and a
 //! deck in feet.
 
+mod faults;
+mod read;
+
+use super::lines::through;
 use super::net::Layout;
-use super::request::{self, Grid, Input, Options, QuadMesh, Request, USUAL_PATCHES};
-use super::target::{Fault, Target};
-use crate::geometry::mesh::{Face, Manifold, Mesh, MeshError, MeshFault, QuadGrid, QuadGridFault};
+use super::request::{self, Input, Options, Request, USUAL_PATCHES};
+use super::target::Target;
 use crate::methods::{FitError, Issue};
+use faults::{POINTS, VERTICES, indexed, issue, of_target_fault};
 use nalgebra::{Point3, Vector3};
+use read::{LEAST_SINE, NAMED, Read, from_grid, from_mesh};
 
 /// A request that can be fitted.
 #[derive(Debug, Clone)]
@@ -47,19 +52,16 @@ impl Levels {
 
 /// More patches than these take minutes and say no more about a skin.
 pub const MOST_PATCHES: usize = 16_384;
+
 /// A net is split once more than usual up to so many.
 const GROWN_PATCHES: usize = 4096;
+
 /// A single quad split so often has the most patches.
 const MOST_LEVELS: usize = 7;
+
 /// A target further away than this, in mean edges, is another place or unit.
 const FURTHEST_TARGET: f64 = 5.0;
-/// Edges shorter than this share of the mean are mistakes.
-const SHORTEST_EDGE: f64 = 1e-6;
-/// Least sine of the angle between two sides at a corner: below, two lines of
-/// the net fall into one. About half a degree.
-const LEAST_SINE: f64 = 0.01;
-/// Of a long list of faults the first that many are named.
-const NAMED: usize = 20;
+
 /// The closeness may be so many times more or less than usual.
 const CLOSENESS: f64 = 1e3;
 
@@ -87,10 +89,39 @@ impl Task {
         match task {
             Some(mut task) if issues.is_empty() => {
                 target.map_or(Ok(()), |target| task.take_target(target))?;
-                Ok(task)
+                let closed = task.closed_vertices(&request.input);
+                if closed.is_empty() {
+                    Ok(task)
+                } else {
+                    Err(FitError::Invalid(closed))
+                }
             }
             _ => Err(FitError::Invalid(issues)),
         }
+    }
+
+    /// Vertices at which the two lines through the points run into one.
+    fn closed_vertices(&self, input: &Input) -> Vec<Issue> {
+        let path = match input {
+            Input::Mesh(_) => VERTICES,
+            Input::Grid(_) => POINTS,
+        };
+        let start = through(self.layout, &self.points);
+        let sines = start
+            .vertices()
+            .iter()
+            .map(|k| k.du.cross(&k.dv).norm() / (k.du.norm() * k.dv.norm()));
+        let closed = sines
+            .zip(&self.given)
+            .filter(|(sine, _)| sine.is_nan() || *sine < LEAST_SINE);
+        let told = closed.take(NAMED).map(|(_, vertex)| {
+            let message = format!(
+                "at vertex {vertex} the two lines of the net run in one direction, so that the \
+                 surface through it has no tangent plane there"
+            );
+            indexed(path, *vertex, "parallel-lines", message)
+        });
+        told.collect()
     }
 
     /// Lays the net onto a target.
@@ -133,289 +164,6 @@ impl Task {
     /// A place in the user's scale.
     pub(super) fn to_user(&self, p: &Vector3<f64>) -> Vector3<f64> {
         p * self.size + self.middle
-    }
-}
-
-/// A net in the user's scale.
-struct Read {
-    layout: Layout,
-    points: Vec<Point3<f64>>,
-    given: Vec<usize>,
-    /// Where the vertices stand in the request.
-    path: [&'static str; 3],
-}
-
-fn issue(path: &[&str], code: &'static str, message: String, hint: Option<&str>) -> Issue {
-    Issue {
-        path: path.iter().map(|p| (*p).to_owned()).collect(),
-        code,
-        message,
-        hint: hint.map(str::to_owned),
-    }
-}
-
-fn indexed(path: [&str; 3], index: usize, code: &'static str, message: String) -> Issue {
-    let mut found = issue(&path, code, message, None);
-    found.path.push(index.to_string());
-    found
-}
-
-const VERTICES: [&str; 3] = ["input", "mesh", "vertices"];
-const FACES: [&str; 3] = ["input", "mesh", "faces"];
-const POINTS: [&str; 3] = ["input", "grid", "points"];
-
-/// Rows and columns of a mesh, or why it has none.
-fn from_mesh(mesh: &QuadMesh) -> Result<Read, Vec<Issue>> {
-    let mut issues = Vec::new();
-    let mut faces = Vec::with_capacity(mesh.faces.len());
-    for (f, corners) in mesh.faces.iter().enumerate() {
-        match Face::of(corners) {
-            Some(face) if corners.len() == 4 => faces.push(face),
-            _ => issues.push(indexed(
-                FACES,
-                f,
-                "not-a-quad",
-                format!(
-                    "face {f} has {} corners: only quads make rows and columns",
-                    corners.len()
-                ),
-            )),
-        }
-    }
-    issues.truncate(NAMED);
-    if !issues.is_empty() {
-        return Err(issues);
-    }
-    let built = Mesh::new(mesh.vertices.clone(), faces).map_err(|e| vec![of_mesh_error(&e)])?;
-    let unused = unused_vertices(&built);
-    if !unused.is_empty() {
-        return Err(unused);
-    }
-    let surface = Manifold::of(built).map_err(|e| vec![of_mesh_fault(&e)])?;
-    let grid = QuadGrid::of(&surface).map_err(|e| of_grid_fault(&e))?;
-    Ok(Read {
-        layout: Layout {
-            rows: grid.rows,
-            columns: grid.columns,
-            closed: grid.closed,
-        },
-        points: grid.vertices.iter().map(|v| mesh.vertices[*v]).collect(),
-        given: grid.vertices,
-        path: VERTICES,
-    })
-}
-
-fn unused_vertices(mesh: &Mesh) -> Vec<Issue> {
-    let mut used = vec![false; mesh.vertices().len()];
-    let corners = mesh.faces().iter().flat_map(|f| f.corners());
-    corners.for_each(|v| used[*v] = true);
-    let unused = used.iter().enumerate().filter(|(_, used)| !**used);
-    let told = unused.take(NAMED).map(|(v, _)| {
-        let message = format!("vertex {v} belongs to no face");
-        indexed(VERTICES, v, "unused-vertex", message)
-    });
-    told.collect()
-}
-
-fn of_mesh_error(error: &MeshError) -> Issue {
-    let message = error.to_string();
-    match error {
-        MeshError::NotFinite { vertex } => indexed(VERTICES, *vertex, "not-finite", message),
-        MeshError::OutOfRange { face, .. } => indexed(FACES, *face, "no-such-vertex", message),
-        MeshError::RepeatedCorner { face, .. } => indexed(FACES, *face, "degenerate-quad", message),
-    }
-}
-
-fn of_target_fault(path: [&str; 3], fault: &Fault) -> Issue {
-    let in_list = |list: &str, index: usize, code, message: String| {
-        let mut found = issue(&path, code, message, None);
-        found.path.extend([list.to_owned(), index.to_string()]);
-        found
-    };
-    match fault {
-        Fault::Empty => issue(
-            &path,
-            "no-faces",
-            "the target has no faces".to_owned(),
-            None,
-        ),
-        Fault::Corners { face, corners } => {
-            let message = format!("face {face} has {corners} corners, not three or four");
-            in_list("faces", *face, "wrong-corners", message)
-        }
-        Fault::Mesh(error) => match error {
-            MeshError::NotFinite { vertex } => {
-                in_list("vertices", *vertex, "not-finite", error.to_string())
-            }
-            MeshError::OutOfRange { face, .. } => {
-                in_list("faces", *face, "no-such-vertex", error.to_string())
-            }
-            MeshError::RepeatedCorner { face, .. } => {
-                in_list("faces", *face, "repeated-corner", error.to_string())
-            }
-        },
-    }
-}
-
-fn of_mesh_fault(fault: &MeshFault) -> Issue {
-    let message = fault.to_string();
-    match fault {
-        MeshFault::NonManifoldEdge { face, .. } => indexed(FACES, *face, "not-a-surface", message),
-        MeshFault::NotOrientable { face, .. } => indexed(FACES, *face, "one-sided", message),
-        MeshFault::NonManifoldVertex { vertex, .. } => {
-            indexed(VERTICES, *vertex, "not-a-surface", message)
-        }
-        _ => issue(&FACES, "not-a-surface", message, None),
-    }
-}
-
-fn of_grid_fault(fault: &QuadGridFault) -> Vec<Issue> {
-    let at = |v: usize, code| indexed(VERTICES, v, code, String::new());
-    let (mut first, hint) = match fault {
-        QuadGridFault::NotAQuad { face, .. } => {
-            (indexed(FACES, *face, "not-a-quad", String::new()), None)
-        }
-        QuadGridFault::Parts { face, .. } => (
-            indexed(FACES, *face, "several-parts", String::new()),
-            Some("send each part as a job of its own"),
-        ),
-        QuadGridFault::Singular { vertices } => (
-            at(vertices[0].0, "singular-vertex"),
-            Some("cut the mesh along its lines through these vertices into regular parts"),
-        ),
-        QuadGridFault::Ragged { vertices } => (
-            at(vertices[0].0, "ragged-boundary"),
-            Some("end all rows, and all columns, on one line of the net"),
-        ),
-        QuadGridFault::Loops { starts } => (
-            at(starts[0], "several-loops"),
-            Some("cut the mesh along its lines into sheets or tubes"),
-        ),
-        QuadGridFault::Corners { corners, .. } => {
-            let first = corners.first().copied();
-            let unnamed = issue(&FACES, "wrong-corners", String::new(), None);
-            (first.map_or(unnamed, |v| at(v, "wrong-corners")), None)
-        }
-        QuadGridFault::Spiral { vertex } => (
-            at(*vertex, "spiral"),
-            Some("cut the mesh along a line of the net"),
-        ),
-        QuadGridFault::Short { vertex, .. } => (at(*vertex, "short-round"), None),
-    };
-    first.message = fault.to_string();
-    first.hint = hint.map(str::to_owned);
-    vec![first]
-}
-
-/// The rows of a grid, or what is wrong with them.
-fn from_grid(grid: &Grid) -> Result<Read, Vec<Issue>> {
-    let mut issues = Vec::new();
-    let sides = [("rows", grid.rows), ("columns", grid.columns)];
-    for ((name, count), closed) in sides.into_iter().zip(grid.closed) {
-        let least = if closed { 3 } else { 2 };
-        if count < least {
-            let message = format!("the grid has {count} {name}, but {least} are needed");
-            issues.push(issue(&["input", "grid", name], "too-small", message, None));
-        }
-    }
-    let wanted = grid.rows.checked_mul(grid.columns);
-    if wanted != Some(grid.points.len()) {
-        let message = format!(
-            "{} rows of {} points are not {} points",
-            grid.rows,
-            grid.columns,
-            grid.points.len()
-        );
-        issues.push(issue(&POINTS, "wrong-count", message, None));
-    }
-    for (k, p) in grid.points.iter().enumerate() {
-        if p.iter().any(|x| !x.is_finite()) && issues.len() < NAMED {
-            let message = format!("point {k} has a coordinate that is not a finite number");
-            issues.push(indexed(POINTS, k, "not-finite", message));
-        }
-    }
-    if !issues.is_empty() {
-        return Err(issues);
-    }
-    Ok(Read {
-        layout: Layout {
-            rows: grid.rows,
-            columns: grid.columns,
-            closed: grid.closed,
-        },
-        points: grid.points.clone(),
-        given: (0..grid.points.len()).collect(),
-        path: POINTS,
-    })
-}
-
-impl Read {
-    fn in_unit_scale(self, levels: Levels, issues: &mut Vec<Issue>) -> Option<Task> {
-        let count = self.points.len() as f64;
-        let middle = self
-            .points
-            .iter()
-            .fold(Vector3::zeros(), |m, p| m + p.coords / count);
-        let edges: Vec<f64> = [0, 1]
-            .into_iter()
-            .flat_map(|d| self.layout.edges(d))
-            .map(|[a, b]| (self.points[b] - self.points[a]).norm())
-            .collect();
-        let size = edges.iter().map(|e| e / edges.len() as f64).sum::<f64>();
-        if !(size > 0.0 && size.is_finite() && middle.iter().all(|x| x.is_finite())) {
-            let message = format!("the mean length of an edge is {size}");
-            issues.push(issue(&self.path[..2], "no-extent", message, None));
-            return None;
-        }
-        issues.extend(self.degenerate_quads(size));
-        let unit = |p: &Point3<f64>| Point3::from((p.coords - middle) / size);
-        Some(Task {
-            points: self.points.iter().map(unit).collect(),
-            middle,
-            size,
-            layout: self.layout,
-            given: self.given,
-            levels,
-            target: None,
-        })
-    }
-
-    /// Quads with a side of no length or two sides on one another.
-    fn degenerate_quads(&self, size: f64) -> Vec<Issue> {
-        let bad = self.layout.patches().filter_map(|(i, j)| {
-            let [a, b, d, c] = self.layout.corners(i, j);
-            self.fault_of_quad([a, b, c, d], size)
-        });
-        bad.take(NAMED).collect()
-    }
-
-    fn fault_of_quad(&self, ring: [usize; 4], size: f64) -> Option<Issue> {
-        let name = ring.map(|k| self.given[k]);
-        let quad = format!(
-            "the quad of the vertices {}, {}, {}, {}",
-            name[0], name[1], name[2], name[3]
-        );
-        for k in 0..4 {
-            let [before, here, after] = [(k + 3) % 4, k, (k + 1) % 4];
-            let p = |at: usize| self.points[ring[at]].coords / size;
-            let (on, back) = (p(after) - p(here), p(before) - p(here));
-            if on.norm() <= SHORTEST_EDGE {
-                let message = format!(
-                    "{quad} has a side without length, between the vertices {} and {}",
-                    name[here], name[after]
-                );
-                return Some(indexed(self.path, name[here], "degenerate-quad", message));
-            }
-            let sine = on.cross(&back).norm() / (on.norm() * back.norm());
-            if sine.is_nan() || sine < LEAST_SINE {
-                let message = format!(
-                    "{quad} has collapsed: its sides at vertex {} lie in one line",
-                    name[here]
-                );
-                return Some(indexed(self.path, name[here], "degenerate-quad", message));
-            }
-        }
-        None
     }
 }
 

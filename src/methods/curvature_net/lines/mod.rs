@@ -10,3 +10,4 @@ mod start;
 
 pub(super) use solve::{Lines, solve};
 pub use solve::{REACHED, Step};
+pub(super) use start::through;

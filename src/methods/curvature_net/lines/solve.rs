@@ -46,6 +46,8 @@ const RISE: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 const FOUND: usize = 2;
 /// The weight that ends the last level.
 const LAST: f64 = 1e4;
+/// And one more where torsion is left in sharp turns that few patches follow.
+const FURTHER: f64 = 1e6;
 /// Weights of the bending of the way from the start, tried in turn. The first
 /// lets through waves that are longer than some five edges of the first net;
 /// a net that crumples so, with torsion left in its folds, has to stay smoother.
@@ -177,13 +179,15 @@ impl Run<'_> {
         for (at, torsion) in weights.enumerate() {
             let share = at as f64 / count as f64;
             self.control.progress("lines", from + (to - from) * share);
-            let step = self.step(lines, torsion)?;
-            lines.steps.push(step);
+            self.step(lines, torsion)?;
+        }
+        if is_last && lines.missed() > 1.0 {
+            self.step(lines, FURTHER)?;
         }
         Ok(())
     }
 
-    fn step(&self, lines: &mut Lines, torsion: f64) -> Result<Step, Stop> {
+    fn step(&self, lines: &mut Lines, torsion: f64) -> Result<(), Stop> {
         let weights = Weights::new(torsion, self.closeness, self.bending);
         let problem = Level::new(&lines.start, &lines.surface, self.target, weights);
         let mut x = lines.surface.unknowns();
@@ -196,12 +200,13 @@ impl Run<'_> {
         };
         let report = minimize(&problem, &mut x, &settings, self.control)?;
         lines.surface = lines.surface.with_unknowns(&x);
-        Ok(Step {
+        lines.steps.push(Step {
             level: lines.levels,
             torsion,
             bending: self.bending,
             iterations: report.iterations,
             converged: report.termination.converged(),
-        })
+        });
+        Ok(())
     }
 }

@@ -10,7 +10,7 @@ use nalgebra::{Point3, Vector3};
 const SWEEPS: usize = 60;
 
 /// The surface through the points of a net.
-pub(super) fn through(layout: Layout, points: &[Point3<f64>]) -> Surface {
+pub(in super::super) fn through(layout: Layout, points: &[Point3<f64>]) -> Surface {
     let widths = [0, 1].map(|d| widths(layout, points, d));
     with_widths(layout, widths, points)
 }

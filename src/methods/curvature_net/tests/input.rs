@@ -1,6 +1,6 @@
 use super::models::{request, saddle};
 use crate::methods::curvature_net::request::{Input, QuadMesh, Request};
-use crate::methods::curvature_net::smooth;
+use crate::methods::curvature_net::{smooth, validate};
 use crate::methods::{FitError, Issue};
 use crate::solver::Unwatched;
 use nalgebra::Point3;
@@ -167,4 +167,55 @@ fn too_many_patches_are_refused() {
     let mut asked = request(saddle());
     asked.options.levels = Some(9);
     assert_eq!(issues(&asked)[0].code, "too-many-patches");
+}
+
+#[test]
+fn a_closed_grid_that_repeats_its_first_row_is_told_so() {
+    let mut tube = super::models::tube();
+    // Its lines, each with the first point once more.
+    let rows = tube.points.chunks(tube.columns);
+    tube.points = rows
+        .flat_map(|r| r.iter().chain(&r[..1]))
+        .copied()
+        .collect();
+    tube.columns += 1;
+    let found = issues(&request(tube));
+    assert_eq!(found[0].code, "degenerate-quad");
+    assert!(found[0].hint.as_ref().is_some_and(|h| h.contains("repeat")));
+}
+
+#[test]
+fn lines_that_run_into_one_are_named() {
+    // Both lines turn in the middle; for some height they turn together.
+    let net = |y: f64| {
+        let places = [
+            [-2.0, 0.0],
+            [-1.0, 0.7],
+            [2.5, 2.0],
+            [-1.0, -0.7],
+            [0.0, 0.0],
+            [1.0, y],
+            [2.5, -2.0],
+            [1.0, 0.5],
+            [2.0, 0.0],
+        ];
+        crate::methods::curvature_net::request::Grid {
+            rows: 3,
+            columns: 3,
+            closed: [false, false],
+            points: places.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec(),
+        }
+    };
+    let found: Vec<Issue> = (0..400)
+        .filter_map(
+            |k| match validate(&request(net(-1.6 + 0.004 * f64::from(k)))) {
+                Err(FitError::Invalid(issues)) => Some(issues),
+                _ => None,
+            },
+        )
+        .flatten()
+        .filter(|i| i.code == "parallel-lines")
+        .collect();
+    assert!(!found.is_empty());
+    assert_eq!(found[0].path, ["input", "grid", "points", "4"]);
 }
