@@ -2,6 +2,7 @@
 
 use super::energy::{Energy, Quadratic};
 use super::holds::Holds;
+use super::net::project;
 use super::relax::Balance;
 use super::space::{Space, Vector};
 use super::springs::{Gram, Springs};
@@ -115,7 +116,8 @@ fn rounds<const D: usize>(
 ) -> Result<Choice, Stop> {
     let [a, b] = shape.space.domain();
     let reach = REACH * (b - a);
-    let least = if near.is_some() { 1 } else { 2 };
+    let first_rounds = near.is_none();
+    let least = if first_rounds { 2 } else { 1 };
     let mut choice: Option<Choice> = None;
     for round in 0..MOST_ROUNDS {
         control.check()?;
@@ -131,6 +133,9 @@ fn rounds<const D: usize>(
         holds.weigh(&shape.space, next.stiffness, &offsets.stiffnesses());
         holds.follow(springs.held_feet());
         shape.balance(&gram, holds, next.stiffness);
+        if first_rounds && holds.is_empty() {
+            shape.reach_ends(springs);
+        }
         let unheld = holds.tighten(&shape.space, &shape.x);
         let change = |c: Choice| (c.stiffness.ln() - next.stiffness.ln()).abs();
         let steady = choice.is_some_and(|c| change(c) < SETTLED);
@@ -150,6 +155,62 @@ impl<const D: usize> Shape<D> {
     pub(super) fn relieve(&mut self) {
         let [a, b] = self.space.domain();
         self.energy.relieve(&self.space, &self.x, GENTLE / (b - a));
+    }
+
+    /// Lets the curve begin and end at the feet of its end points. At held feet
+    /// the springs of all points resist a move along the curve, so that a stiff
+    /// one would come to its ends only by very many rounds.
+    fn reach_ends(&mut self, springs: &Springs<D>) {
+        /// Moves of an end, share of the domain: one that cannot be seen, and
+        /// one that has another cause.
+        const SEEN: f64 = 1e-6;
+        const MOST: f64 = 0.05;
+        let pinned: Vec<usize> = (0..springs.points.len())
+            .filter(|i| springs.pinned[*i])
+            .collect();
+        let &[i, j] = pinned.as_slice() else {
+            return;
+        };
+        if self.space.is_closed() || !springs.is_free() {
+            return;
+        }
+        let [a, b] = self.space.domain();
+        let [i, j] = if springs.feet[i] <= springs.feet[j] {
+            [i, j]
+        } else {
+            [j, i]
+        };
+        let curve = self.space.pieces(&self.x);
+        let shift = |u: f64, p: &Vector<D>| {
+            let [point, d1, d2] = curve.jet::<3>(u);
+            let away = p - point;
+            let speed = d1.norm_squared();
+            away.dot(&d1) / (speed - away.dot(&d2)).max(0.1 * speed)
+        };
+        let shifts = [shift(a, &springs.points[i]), shift(b, &springs.points[j])];
+        let most = shifts[0].abs().max(shifts[1].abs()) / (b - a);
+        let at_ends = springs.feet[i] == a && springs.feet[j] == b;
+        if !at_ends || most.is_nan() || !(SEEN..=MOST).contains(&most) {
+            return;
+        }
+        let stretch = (b - a + shifts[1] - shifts[0]) / (b - a);
+        let beyond = |u: f64, end: f64| {
+            let [point, d1, d2] = curve.jet::<3>(end);
+            point + d1 * (u - end) + d2 * (0.5 * (u - end).powi(2))
+        };
+        let stretched = project(&self.space, |u| {
+            let u = a + shifts[0] + (u - a) * stretch;
+            if u < a {
+                beyond(u, a)
+            } else if u > b {
+                beyond(u, b)
+            } else {
+                curve.point(u)
+            }
+        });
+        if let Some(x) = stretched {
+            self.x = x;
+        }
     }
 
     /// Gauss–Newton steps at a stiffness.

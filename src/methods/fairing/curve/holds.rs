@@ -63,6 +63,11 @@ impl<const D: usize> Holds<D> {
         }
     }
 
+    /// Whether nothing is held.
+    pub(super) fn is_empty(&self) -> bool {
+        self.holds.is_empty() && self.straight.is_empty()
+    }
+
     /// Adds a condition at parameter `u`; `follows`: of a point whose foot
     /// moves ([`Self::follow`]).
     pub(super) fn push(&mut self, u: f64, condition: Condition<D>, follows: bool) {

@@ -87,19 +87,28 @@ pub(super) fn split(space: &Space, at: &[f64]) -> Option<Space> {
     made.ok()
 }
 
-/// The coefficients in a richer space of the curve with coefficients `x`: by
-/// least squares at quadrature nodes, exact because the curve lies in it.
+/// The coefficients in a richer space of the curve with coefficients `x`.
 pub(super) fn transfer<const D: usize>(
     from: &Space,
     x: &[Vector<D>],
     to: &Space,
+) -> Option<Vec<Vector<D>>> {
+    let curve = from.pieces(x);
+    project(to, |u| curve.point(u))
+}
+
+/// The coefficients of the curve nearest to another by least squares at
+/// quadrature nodes: the same curve, if it lies in the space.
+pub(super) fn project<const D: usize>(
+    to: &Space,
+    point: impl Fn(f64) -> Vector<D>,
 ) -> Option<Vec<Vector<D>>> {
     let mut matrix = to.matrix(1);
     let mut sums = vec![Vector::<D>::zeros(); to.unknowns()];
     for node in nodes(to) {
         let row = node.basis.values();
         add_outer(to, &mut matrix, node.basis.first, row, node.weight);
-        let point = from.point(x, node.u);
+        let point = point(node.u);
         for (k, b) in row.iter().enumerate() {
             sums[to.unknown(node.basis.first + k)] += point * (node.weight * b);
         }
