@@ -4,6 +4,7 @@
 //! plane are fitted in that plane.
 
 use super::checks::{Complaints, check_indices, check_kept, check_options, check_points};
+use super::contradictions::check_contradictions;
 use super::request::{Options, Request, Solver};
 use super::space::Vector;
 use crate::methods::FitError;
@@ -192,6 +193,7 @@ pub(super) fn prepare(request: &Request) -> Result<Prepared, FitError> {
         return Err(FitError::Invalid(issues.0));
     }
     check_kept(request, &prepared, &mut issues);
+    check_contradictions(request, &prepared, &mut issues);
     if issues.0.is_empty() {
         Ok(prepared)
     } else {

@@ -37,9 +37,11 @@
 //! * A slip at an end of the curve cannot be told from its shape.
 //! * Ends: tangent and curvature there rest on few points.
 
+mod bends;
 mod bounded;
 mod cells;
 mod checks;
+mod contradictions;
 mod energy;
 mod extent;
 mod fairness;

@@ -6,17 +6,17 @@
 //! Weisberg 1982, §2.2, which holds for penalised fits as well). As one slip
 //! makes all points look noisy and so hides itself, λ is the likeliest
 //! *without* the point. The worst point is tested by F = (w dᵢ²/(1 − ℓᵢ)) /
-//! (Qᵢ/ν), its chance multiplied by the number of points (Bonferroni); if
-//! that is small it is set aside and the rest is looked at again.
+//! (Qᵢ/ν), its chance multiplied by the number of points and of the λ looked at
+//! (Bonferroni); if that is small it is set aside and the rest is looked at again.
 //!
-//! Slips stand alone. A run of neighbours that are all off, each about as much
-//! as the next, is a bend that the curve does not follow, and is not called
-//! slips.
+//! Points of a bend are not called slips ([`super::bends`]): they come back
+//! into the fit, and the others are looked at again.
 //!
 //! Many points hide nothing: there the spread of the residuals is estimated by
 //! its median, which a few per cent of slips do not move, points far outside
 //! are set aside, and the rest is fitted anew until nothing changes.
 
+use super::bends::bends;
 use super::free::{Shape, settle};
 use super::holds::Holds;
 use super::space::Vector;
@@ -65,85 +65,89 @@ pub(super) fn suspects<const D: usize>(
     (choice, doubtful): (&Choice, &[usize]),
     control: &dyn Control,
 ) -> Result<Vec<Suspect<D>>, Stop> {
-    let (mut shape, mut springs) = (shape.clone(), springs.clone());
-    let given = springs.weights.clone();
-    let count = given.iter().filter(|w| **w > 0.0).count();
-    let mut set_aside = if count <= TRY_EACH {
-        one_by_one(&shape, &mut springs, choice, control)?
-    } else {
-        by_medians(&mut shape, &mut springs, control)?
-    };
-    for i in doubtful {
-        // Not in the fit: its distance is all its own, as a prediction's.
-        let e = springs.points[*i] - shape.space.point(&shape.x, springs.feet[*i]);
-        let ratio = e.norm_squared() / (D - 1) as f64 / choice.noise.max(LEAST_NOISE).powi(2);
-        let freedom = (count as f64 - choice.degrees_of_freedom / (D - 1) as f64).max(1.0);
-        let chance = count as f64 * tail(ratio / PREDICTED, D - 1, freedom);
-        if chance < SURE {
-            set_aside.push((*i, chance));
+    /// Times that slips are sought anew with the points of bends back.
+    const LOOKS: usize = 4;
+    let mut springs = springs.clone();
+    for _ in 0..LOOKS {
+        let (mut rest, mut others) = (shape.clone(), springs.clone());
+        let mut set_aside = set_aside(&mut rest, &mut others, choice, control)?;
+        set_aside.extend(still_doubtful(shape, &springs, choice, doubtful));
+        if set_aside.is_empty() {
+            return Ok(Vec::new());
         }
+        others.weights.clone_from(&springs.weights);
+        for (i, _) in &set_aside {
+            others.weights[*i] = 0.0;
+        }
+        let settled = settle(&mut rest, &mut others, &mut Holds::none(), control)?;
+        let away = others.residuals(&rest.space, &rest.x);
+        let indices: Vec<usize> = set_aside.iter().map(|s| s.0).collect();
+        let bent = bends(&indices, &others, (&away, rest.space.is_closed()));
+        if !bent.contains(&true) {
+            return Ok(described(&set_aside, (&rest, &others), settled.noise));
+        }
+        // Shape: in the fit again, and not asked about any more.
+        springs.pin(indices.iter().zip(&bent).filter(|b| *b.1).map(|b| *b.0));
     }
-    if set_aside.is_empty() {
-        return Ok(Vec::new());
-    }
-    let residuals = springs.residuals(&shape.space, &shape.x);
-    let set_aside = alone(set_aside, &springs, &residuals);
-    if set_aside.is_empty() {
-        return Ok(Vec::new());
-    }
-    for (w, given) in springs.weights.iter_mut().zip(&given) {
-        *w = *given;
-    }
-    for (i, _) in &set_aside {
-        springs.weights[*i] = 0.0;
-    }
-    let rest = settle(&mut shape, &mut springs, &mut Holds::none(), control)?;
-    let noise = rest.noise.max(f64::MIN_POSITIVE);
-    let mut found: Vec<Suspect<D>> = set_aside
-        .into_iter()
-        .map(|(index, chance)| {
-            let expected = shape.space.point(&shape.x, springs.feet[index]);
-            let deviations = (springs.points[index] - expected).norm() / noise;
-            Suspect {
-                index,
-                expected,
-                deviations,
-                chance,
-            }
-        })
-        .filter(|s| s.deviations > LEAST_DEVIATIONS)
-        .collect();
-    found.sort_by(|a, b| a.chance.total_cmp(&b.chance).then(a.index.cmp(&b.index)));
-    Ok(found)
+    Ok(Vec::new())
 }
 
-/// Of points set aside, those that are not part of a bend: a run along the
-/// curve whose distances follow on one another.
-fn alone<const D: usize>(
-    found: Vec<(usize, f64)>,
-    springs: &Springs<D>,
-    residuals: &[Vector<D>],
-) -> Vec<(usize, f64)> {
-    /// Points in a row that make a run.
-    const RUN: usize = 3;
-    /// Neighbours of a bend differ by at most this share of the larger; slips
-    /// that happen to be neighbours have nothing to do with one another.
-    const FOLLOWS: f64 = 0.5;
-    let mut along: Vec<usize> = (0..springs.feet.len()).collect();
-    along.sort_by(|a, b| springs.feet[*a].total_cmp(&springs.feet[*b]).then(a.cmp(b)));
-    let mut off = vec![false; along.len()];
-    found.iter().for_each(|(i, _)| off[*i] = true);
-    let mut kept = vec![false; along.len()];
-    let follows = |pair: &[usize]| {
-        let [a, b] = [residuals[pair[0]], residuals[pair[1]]];
-        (a - b).norm() <= FOLLOWS * a.norm().max(b.norm())
-    };
-    for run in along.chunk_by(|a, b| off[*a] == off[*b]) {
-        if off[run[0]] && (run.len() < RUN || !run.windows(2).all(follows)) {
-            run.iter().for_each(|i| kept[*i] = true);
-        }
+/// Points that a fit of the others does not expect, with their chances.
+fn set_aside<const D: usize>(
+    shape: &mut Shape<D>,
+    springs: &mut Springs<D>,
+    choice: &Choice,
+    control: &dyn Control,
+) -> Result<Vec<(usize, f64)>, Stop> {
+    let count = springs.weights.iter().filter(|w| **w > 0.0).count();
+    if count <= TRY_EACH {
+        one_by_one(shape, springs, choice, control)
+    } else {
+        by_medians(shape, springs, control)
     }
-    found.into_iter().filter(|(i, _)| kept[*i]).collect()
+}
+
+/// Of the points that are not in the fit, those that it does not expect.
+fn still_doubtful<const D: usize>(
+    shape: &Shape<D>,
+    springs: &Springs<D>,
+    choice: &Choice,
+    doubtful: &[usize],
+) -> Vec<(usize, f64)> {
+    let count = springs.weights.iter().filter(|w| **w > 0.0).count() as f64;
+    let freedom = (count - choice.degrees_of_freedom / (D - 1) as f64).max(1.0);
+    let chance = |i: usize| {
+        // Its distance is all its own, as a prediction's.
+        let e = springs.points[i] - shape.space.point(&shape.x, springs.feet[i]);
+        let ratio = e.norm_squared() / (D - 1) as f64 / choice.noise.max(LEAST_NOISE).powi(2);
+        count * LOG_STEPS.len() as f64 * tail(ratio / PREDICTED, D - 1, freedom)
+    };
+    let each = doubtful.iter().filter(|i| !springs.pinned[**i]);
+    each.map(|i| (*i, chance(*i)))
+        .filter(|s| s.1 < SURE)
+        .collect()
+}
+
+/// The points set aside against the fit without them, the surest first.
+fn described<const D: usize>(
+    set_aside: &[(usize, f64)],
+    (shape, springs): (&Shape<D>, &Springs<D>),
+    noise: f64,
+) -> Vec<Suspect<D>> {
+    let describe = |(index, chance): &(usize, f64)| {
+        let expected = shape.space.point(&shape.x, springs.feet[*index]);
+        let off = (springs.points[*index] - expected).norm();
+        Suspect {
+            index: *index,
+            expected,
+            deviations: off / noise.max(f64::MIN_POSITIVE),
+            chance: *chance,
+        }
+    };
+    let all = set_aside.iter().map(describe);
+    let mut found: Vec<Suspect<D>> = all.filter(|s| s.deviations > LEAST_DEVIATIONS).collect();
+    found.sort_by(|a, b| a.chance.total_cmp(&b.chance).then(a.index.cmp(&b.index)));
+    found
 }
 
 /// A candidate for deletion: its score without it, F, freedom of the rest.
@@ -169,7 +173,8 @@ fn one_by_one<const D: usize>(
         let Some(worst) = worst_deletion(shape, springs, choice) else {
             break;
         };
-        let chance = (count as f64 * tail(worst.ratio, D - 1, worst.freedom)).min(1.0);
+        let looks = (count * LOG_STEPS.len()) as f64;
+        let chance = (looks * tail(worst.ratio, D - 1, worst.freedom)).min(1.0);
         if chance >= SURE {
             break;
         }

@@ -42,11 +42,14 @@ const TWIGS: f64 = 0.06;
 /// A twig this many cells long with this share of the points is a branch.
 const BRANCH_CELLS: f64 = 5.0;
 const BRANCH_SHARE: f64 = 0.03;
+/// The same where there is hardly another twig: no noise made it, and coarser
+/// cells would only hide it.
+const CLEAR_BRANCH_CELLS: f64 = 3.0;
+const CLEAR_BRANCH_SHARE: f64 = 0.012;
 /// A gap this many times the widest expected parts the points, if each part
 /// has this share of them.
 const PARTING_GAP: f64 = 4.0;
 const PART_SHARE: f64 = 0.03;
-const PARTS: &str = "several-parts";
 /// The ends of the path of a closed curve are this near, in widest gaps.
 const CLOSING_GAP: f64 = 2.5;
 /// A path that comes back to its end after this many widest gaps branches
@@ -68,6 +71,13 @@ struct Path<const D: usize> {
     lonely: Vec<usize>,
     /// Share of the points on twigs.
     twigs: f64,
+}
+
+/// Why no single curve goes through the cells; `clear` if noise cannot be the
+/// cause.
+struct Obstacle {
+    issue: Issue,
+    clear: bool,
 }
 
 /// Orders points.
@@ -128,9 +138,9 @@ fn find_path<const D: usize>(
                     best = Some(path);
                 }
             }
-            // Coarser cells would only hide the gap.
-            Err(issue) if issue.code == PARTS => return Err(FitError::Invalid(vec![issue])),
-            Err(issue) => complaint = Some(issue),
+            // Coarser cells would only hide it.
+            Err(found) if found.clear => return Err(FitError::Invalid(vec![found.issue])),
+            Err(found) => complaint = Some(found.issue),
         }
     }
     match (best, complaint) {
@@ -146,7 +156,7 @@ fn through<const D: usize>(
     (points, lonely): (&[Vector<D>], Vec<usize>),
     side: f64,
     closed: Option<bool>,
-) -> Result<Path<D>, Issue> {
+) -> Result<Path<D>, Obstacle> {
     let count = points.len();
     let means: Vec<Vector<D>> = all.iter().map(|c| c.mean).collect();
     let tree = Tree::spanning(&means);
@@ -154,12 +164,12 @@ fn through<const D: usize>(
     // Gaps of points strewn at random are exponential: the widest of n is
     // about ln n times the mean.
     let widest = (total / count as f64 * (count as f64).ln()).max(side);
-    check_parts(all, &tree, count, PARTING_GAP * widest)?;
+    let parted = |issue| Obstacle { issue, clear: true };
+    check_parts(all, &tree, count, PARTING_GAP * widest).map_err(parted)?;
     let nodes = tree.longest_path();
     let hung = tree.hang_on(&nodes);
     let mut near = vec![0; count];
     let mut twigs = 0;
-    let mut branch = (0, 0.0_f64);
     for (cell, (at, depth)) in all.iter().zip(&hung) {
         for i in &cell.points {
             near[*i] = *at;
@@ -167,13 +177,8 @@ fn through<const D: usize>(
         if *depth > 0.0 {
             twigs += cell.points.len();
         }
-        if *depth > BRANCH_CELLS * widest {
-            branch = (branch.0 + cell.points.len(), branch.1.max(*depth));
-        }
     }
-    if branch.0 as f64 > BRANCH_SHARE * count as f64 {
-        return Err(branches(all, &hung, branch));
-    }
+    check_branches(all, &hung, (count, twigs), widest)?;
     let path: Vec<Vector<D>> = nodes.iter().map(|k| means[*k]).collect();
     for i in &lonely {
         let distance = |k: &usize| (path[*k] - points[*i]).norm();
@@ -183,7 +188,9 @@ fn through<const D: usize>(
     let gap = (path[0] - path[path.len() - 1]).norm();
     let loops = path.len() > 5 && gap <= CLOSING_GAP * widest && gap < 0.2 * total;
     if closed.is_none() && !loops {
-        check_tails(all, &nodes, &path, widest)?;
+        let clear = twigs as f64 <= TWIGS * count as f64;
+        let tail = |issue| Obstacle { issue, clear };
+        check_tails(all, &nodes, &path, widest).map_err(tail)?;
     }
     Ok(Path {
         lonely,
@@ -193,6 +200,41 @@ fn through<const D: usize>(
         twigs: twigs as f64 / count as f64,
         nodes: path,
     })
+}
+
+/// A twig too long for noise: clearly so where it is almost the only one.
+fn check_branches<const D: usize>(
+    all: &[Cell<D>],
+    hung: &[(usize, f64)],
+    (count, twigs): (usize, usize),
+    widest: f64,
+) -> Result<(), Obstacle> {
+    // Points farther from the path than `least`, and all of the twigs that
+    // these belong to.
+    let beyond = |least: f64| {
+        let mut roots: Vec<usize> = hung.iter().filter(|h| h.1 > least).map(|h| h.0).collect();
+        roots.dedup();
+        roots.sort_unstable();
+        let (mut deep, mut whole) = (0, 0);
+        for (cell, (at, depth)) in all.iter().zip(hung) {
+            if *depth > least {
+                deep += cell.points.len();
+            }
+            if *depth > 0.0 && roots.binary_search(at).is_ok() {
+                whole += cell.points.len();
+            }
+        }
+        (deep, whole)
+    };
+    let share = |points: usize| points as f64 / count as f64;
+    let (deep, whole) = beyond(CLEAR_BRANCH_CELLS * widest);
+    let clear = share(deep) > CLEAR_BRANCH_SHARE && share(twigs - whole) <= TWIGS;
+    let (longer, _) = beyond(BRANCH_CELLS * widest);
+    if clear || share(longer) > BRANCH_SHARE {
+        let issue = branches(all, hung, whole.max(longer));
+        return Err(Obstacle { issue, clear });
+    }
+    Ok(())
 }
 
 /// Removes the cells that hold far fewer points than others, and returns
@@ -239,7 +281,7 @@ fn check_parts<const D: usize>(
     let one = |p: &Vec<usize>| all[p[0]].points[0];
     Err(Issue {
         path: vec!["input".into(), "points".into()],
-        code: PARTS,
+        code: "several-parts",
         message: format!(
             "the points lie in {} parts of {} points; point {} belongs to one, point {} to another",
             large.len(),
@@ -273,18 +315,14 @@ fn check_tails<const D: usize>(
                 let hung: Vec<(usize, f64)> = (0..all.len())
                     .map(|k| (0, f64::from(u8::from(k == nodes[end]))))
                     .collect();
-                return Err(branches(all, &hung, (count, 0.0)));
+                return Err(branches(all, &hung, count));
             }
         }
     }
     Ok(())
 }
 
-fn branches<const D: usize>(
-    all: &[Cell<D>],
-    hung: &[(usize, f64)],
-    (count, _): (usize, f64),
-) -> Issue {
+fn branches<const D: usize>(all: &[Cell<D>], hung: &[(usize, f64)], count: usize) -> Issue {
     let deepest = hung
         .iter()
         .enumerate()

@@ -35,6 +35,57 @@ fn issues_name_their_place() {
     assert!(validate(&Request::through(half_circle(13), 2)).is_empty());
 }
 
+/// Code and place of every issue.
+fn issues(request: &Request) -> Vec<(&'static str, String)> {
+    let each = validate(request).into_iter();
+    each.map(|i| (i.code, i.path.join("/"))).collect()
+}
+
+#[test]
+fn wishes_that_contradict_each_other_are_named() {
+    let line = |n: u32| {
+        (0..n)
+            .map(|k| Point3::new(f64::from(k), 0.0, 0.0))
+            .collect()
+    };
+    let mut closed = Request::through(line(6), 2);
+    closed.closed = Some(true);
+    assert_eq!(issues(&closed), [("collinear", "input/points".into())]);
+    closed.closed = None;
+    assert!(issues(&closed).is_empty());
+
+    let mut request = Request::through(half_circle(13), 2);
+    request.options.straight = vec![[0, 4]];
+    request.options.locked = vec![0, 2, 4];
+    request.options.end_curvatures = [Some(1.0), None];
+    let found = issues(&request);
+    assert_eq!(
+        found,
+        [
+            ("contradiction", "options/straight/0".into()),
+            ("contradiction", "options/end_curvatures/0".into())
+        ]
+    );
+    request.options.locked = vec![0, 4];
+    request.options.end_curvatures = [None; 2];
+    assert!(issues(&request).is_empty());
+    request.options.end_tangents = [Some(nalgebra::Vector3::y()), None];
+    assert_eq!(
+        issues(&request),
+        [("contradiction", "options/end_tangents/0".into())]
+    );
+    // What is wrong by itself.
+    let mut request = Request::through(half_circle(13), 2);
+    request.options.tolerances = vec![0.1; 12];
+    request.options.straight = vec![[5, 5]];
+    request.options.degree = Some(2);
+    request.options.freedom = [false, false, true];
+    let found: Vec<&str> = issues(&request).iter().map(|i| i.0).collect();
+    for want in ["wrong-count", "empty-stretch", "out-of-range", "no-freedom"] {
+        assert!(found.contains(&want), "{want} not in {found:?}");
+    }
+}
+
 #[test]
 fn few_points_and_lines() {
     for n in 2..6 {

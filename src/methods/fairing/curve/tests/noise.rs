@@ -164,3 +164,56 @@ fn tight_tolerances_cost_fairness_by_degrees() {
         before = rough;
     }
 }
+
+/// Of many points only some are asked at first, and only some are bounded:
+/// nothing of that may show.
+#[test]
+fn many_points_are_all_kept() {
+    let mut request = Request::through(frame(4500, 0.005, 101), 2);
+    let free = fitted(&request);
+    assert!((free.report.noise / 0.005 - 1.0).abs() < 0.05);
+    assert!((free.after.curvature_variation / frame_variation() - 1.0).abs() < 0.05);
+    request.options.tolerance = Some(0.022);
+    let o = fitted(&request);
+    assert!(o.within_limits);
+    assert!(o.report.gap.expect("there is a gap") < 1e-3);
+    assert!(o.after.curvature_variation < free.after.curvature_variation);
+    // The points that hold it back are at their limit.
+    let most = o.moves.iter().map(|m| m.holds_back).fold(0.0, f64::max);
+    let holding = o.moves.iter().filter(|m| m.holds_back > 0.05 * most);
+    assert!(holding.clone().count() >= 4);
+    for m in holding {
+        assert!(
+            m.distance > 0.99 * 0.022,
+            "point {} at {}",
+            m.index,
+            m.distance
+        );
+    }
+    let wider = o
+        .trade_off
+        .iter()
+        .filter(|t| t.reached && t.tolerance > 0.022);
+    for row in wider {
+        assert!(row.curvature_variation < o.after.curvature_variation);
+    }
+}
+
+/// Straight or round, the curve reaches the ends of its points.
+#[test]
+fn stiff_curves_reach_their_ends() {
+    let mut noise = Noise(7);
+    let points: Vec<Point3<f64>> = (0..300)
+        .map(|k| {
+            let s = f64::from(k) / 299.0;
+            Point3::new(
+                8.0 * s + 0.005 * noise.normal(),
+                0.005 * noise.normal(),
+                0.0,
+            )
+        })
+        .collect();
+    let o = fitted(&Request::through(points.clone(), 2));
+    assert!((o.curve.start().x - points[0].x).abs() < 1e-4);
+    assert!((o.curve.end().x - points[299].x).abs() < 1e-4);
+}

@@ -91,3 +91,21 @@ fn outliers_in_a_row_are_outliers_too() {
     );
     assert!(o.slips.iter().filter(|s| bad.contains(&s.index)).count() + 3 >= o.slips.len());
 }
+
+/// The zeros beyond the end of a waterline are no slips, nor is the first
+/// breadth after them.
+#[test]
+fn zeros_that_end_are_an_edge() {
+    let breadth = |k: i32| {
+        let s = f64::from(k - 3) / 18.0;
+        if k < 3 {
+            0.0
+        } else {
+            6.0 * (s * (2.0 - s)).sqrt().min(1.0) + 0.8
+        }
+    };
+    let points = (0..22).map(|k| Point3::new(f64::from(k), breadth(k), 0.0));
+    let o = fitted(&Request::through(points.collect(), 2));
+    let zeros: Vec<usize> = o.slips.iter().map(|s| s.index).filter(|i| *i < 3).collect();
+    assert!(zeros.is_empty(), "{zeros:?}");
+}

@@ -78,4 +78,11 @@ fn parts_and_branches_are_refused_by_name() {
     assert_eq!(code(two.collect()), "several-parts");
     let tee = line(200, (0.0, 0.0), (10.0, 0.0)).chain(line(80, (5.0, 0.1), (5.0, 5.0)));
     assert_eq!(code(tee.collect()), "branch");
+    // A loop with a tail: the tail is neither noise nor a hairpin.
+    let around = (0..600).map(|k| {
+        let angle = std::f64::consts::TAU * f64::from(k) / 600.0;
+        Point3::new(3.0 * angle.cos(), 2.0 * angle.sin(), 0.0)
+    });
+    let tail = line(60, (3.05, 0.0), (5.0, 0.4));
+    assert_eq!(code(around.chain(tail).collect()), "branch");
 }
