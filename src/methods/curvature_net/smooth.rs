@@ -44,7 +44,8 @@ pub struct Smooth {
 ///
 /// # Errors
 /// [`FitError::Invalid`] for unusable input, [`FitError::Stopped`] when the
-/// control says so.
+/// control says so, [`FitError::Numerical`] where the start folds between its
+/// vertices.
 pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitError> {
     control.progress("reading", 0.0);
     let task = Task::new(request)?;
@@ -60,6 +61,13 @@ pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitErr
     let mut borders = BorderFigures::of(&lines.surface, umbilics.mean_difference);
     if let Some(net) = paper {
         net.correct(&mut borders);
+    }
+    if !borders.mean_torsion.is_finite() {
+        // Only where a border of the start has no tangent plane between its
+        // ends, which no check of the vertices sees.
+        return Err(FitError::Numerical(
+            "the surface through the net has no tangent plane somewhere along a border".to_owned(),
+        ));
     }
     let shape = ShapeFigures::of(&lines.surface, &lines.start);
     let (size, middle) = (task.size, &task.middle);

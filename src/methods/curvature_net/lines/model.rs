@@ -139,7 +139,9 @@ impl LeastSquares for Level<'_> {
 mod tests {
     use super::super::start::through;
     use super::*;
+    use crate::geometry::BSplineSurface;
     use crate::methods::curvature_net::net::Layout;
+    use crate::methods::curvature_net::request;
     use crate::solver::derivative_check::worst_disagreement;
     use nalgebra::Point3;
 
@@ -172,6 +174,26 @@ mod tests {
             let worst = worst_disagreement(&problem, &x, 1e-6);
             assert!(worst.relative < 1e-6, "{worst:?}");
         }
+    }
+
+    #[test]
+    fn derivatives_agree_with_a_target() {
+        let start = wavy([false, false]);
+        let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let hill = (0..9).map(|k| {
+            let height = if k == 4 { 1.5 } else { 0.1 };
+            Point3::new(
+                -1.0 + 3.0 * (k / 3) as f64,
+                -1.0 + 2.0 * (k % 3) as f64,
+                height,
+            )
+        });
+        let spline = BSplineSurface::new([2, 2], [knots.clone(), knots], hill.collect(), None);
+        let spline = request::Target::BSpline(Box::new(spline.expect("a surface")));
+        let target = Target::new(&spline, 1.0, &nalgebra::Vector3::zeros()).expect("a target");
+        let problem = Level::new(&start, &start, Some(&target), Weights::new(2.0, 1.5, 0.7));
+        let worst = worst_disagreement(&problem, &start.unknowns(), 1e-6);
+        assert!(worst.relative < 1e-6, "{worst:?}");
     }
 
     #[test]
