@@ -14,7 +14,7 @@
 //! With S the surface, N = S_u × S_v, a line c of the net in direction u and
 //! N_c its derivative along c:
 //!
-//! * torsion: det(S_u, N, N_u) / (|N|² |S_u|) at K + 1 places of every border,
+//! * torsion: det(S_u, N, N_u) / (|N|² |S_u|) at six places of every border,
 //!   the geodesic torsion times the length of the border, radians; 0 ⇔ N_c ∥ c′
 //!   ⇔ c is a line of curvature (do Carmo 1976, §3.3);
 //! * squareness: S_u·S_v / (|S_u| |S_v|) at every vertex;
