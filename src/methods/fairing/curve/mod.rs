@@ -34,7 +34,11 @@
 //!   anyone would call fair: the result says how many points are beyond it.
 //! * Unordered points must lie on one curve without crossings, its turns
 //!   farther apart than the points scatter; parts and branches are refused.
-//! * A slip at an end of the curve cannot be told from its shape.
+//! * A slip at an end of the curve cannot be told from its shape, nor one on a
+//!   sharp bend with a few points on it: there points that are right may be
+//!   named.
+//! * A tail at a loop is told from noise if it is some widest gaps long and has
+//!   more than a hundredth of the points.
 //! * Ends: tangent and curvature there rest on few points.
 
 mod bends;

@@ -20,7 +20,7 @@
 //! So the likeliest gives the noise, and the curve becomes **the stiffest that
 //! the points do not refute**: λ is raised while the sum of squares grows by
 //! no more than noise in the parameters given up explains,
-//! ΔS ≤ σ̂² (Δdf + √2 √(2 Δdf)).
+//! ΔS ≤ σ̂² (Δdf + 2 √Δdf).
 //!
 //! Likelihood and not cross-validation, because GCV has a flat minimum that on
 //! a few dozen points is at interpolation too often. Every λ costs one banded
@@ -52,8 +52,8 @@ const NEAR: f64 = 3.0;
 /// 95 % of χ² with one degree of freedom.
 const REFUTED: f64 = 3.84;
 /// Standard deviations above its mean that a χ² of pure noise may reach. At 2
-/// dense points lose a few per cent of ∫ κ′² and sparse ones a fifth of what
-/// they tell of the place, at 1 the curvature is half as exact again.
+/// curves of few points lie up to a tenth farther from their truth, at 1 the
+/// curvature of many is a third less exact.
 const DEVIATES: f64 = std::f64::consts::SQRT_2;
 /// 1 − 1/φ, the golden section.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
