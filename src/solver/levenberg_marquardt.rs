@@ -40,6 +40,9 @@ pub struct Settings {
     pub damping: f64,
     /// μ of the one-sided residuals, in their unit; zero for sharp ones.
     pub smoothing: f64,
+    /// The least scale of an unknown, as a share of the largest: damps those
+    /// that the residuals hardly see near the start but see farther on.
+    pub least_scale: f64,
     /// How the normal equations are stored and factored.
     pub normal_equations: NormalEquations,
 }
@@ -53,6 +56,7 @@ impl Default for Settings {
             reduction: 1e-9,
             damping: 1e-3,
             smoothing: 0.0,
+            least_scale: 1e-12,
             normal_equations: NormalEquations::Envelope,
         }
     }
@@ -76,6 +80,7 @@ struct State {
     /// Derivatives of the cost by the residuals at `x`.
     derivatives: Derivatives,
     smoothing: f64,
+    least_scale: f64,
     damping: f64,
     /// Nielsen's ν: the factor of the next increase.
     growth: f64,
@@ -136,6 +141,7 @@ impl State {
             scale: vec![0.0; x.len()],
             derivatives: Derivatives::default(),
             smoothing: settings.smoothing,
+            least_scale: settings.least_scale,
             damping: settings.damping,
             growth: 2.0,
             evaluations: 0,
@@ -165,7 +171,7 @@ impl State {
         let top = largest(&diagonal).max(f64::MIN_POSITIVE);
         for (scale, d) in self.scale.iter_mut().zip(&diagonal) {
             // An unknown that no residual sees still needs a positive scale.
-            *scale = scale.max(*d).max(1e-12 * top);
+            *scale = scale.max(*d).max(self.least_scale * top);
         }
     }
 

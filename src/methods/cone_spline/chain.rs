@@ -6,6 +6,7 @@
 
 use crate::geometry::cone::{Foot, Frame, Strain};
 use nalgebra::{Point3, Vector3};
+use std::cmp::Ordering;
 
 /// A G¹ chain of patches.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +33,11 @@ pub(super) struct Part {
     pub(super) strain: Strain,
     /// Arcs to its first and last ruling.
     pub(super) arc: [f64; 2],
-    /// Where on these two rulings the base line should pass.
-    pub(super) lambda: [f64; 2],
+    /// λ of its base line.
+    pub(super) base: f64,
+    /// λ of the point of its first ruling that it shares with the patch
+    /// before, and of the point of its last that it shares with the next.
+    pub(super) shared: [f64; 2],
 }
 
 impl Chain {
@@ -62,48 +66,58 @@ impl Chain {
             frame,
             strain: self.strains[i],
             arc: self.reach[i],
-            lambda: [0.0; 2],
+            base: 0.0,
+            shared: [
+                if 0 < i && i <= self.middle {
+                    self.slides[i - 1]
+                } else {
+                    0.0
+                },
+                if self.middle <= i && i < self.slides.len() {
+                    self.slides[i]
+                } else {
+                    0.0
+                },
+            ],
         };
         self.frames().into_iter().enumerate().map(part).collect()
     }
 
-    /// Links patches: each is moved so that its first ruling lies on the last
-    /// of its neighbour towards the middle, the middle one stays.
+    /// Links patches: each is moved so that it shares its ruling and its point
+    /// with its neighbour towards the middle; the middle one stays.
     pub(super) fn link(parts: &[Part]) -> Chain {
         let middle = middle(parts);
-        let mut chain = Chain {
-            root: parts[middle].frame,
-            middle,
-            strains: Vec::with_capacity(parts.len()),
-            reach: Vec::with_capacity(parts.len()),
-            slides: vec![0.0; parts.len() - 1],
+        let anchors: Vec<f64> = (0..parts.len())
+            .map(|i| anchor(&parts[i], i, middle))
+            .collect();
+        let root = &parts[middle];
+        let slide = |(i, pair): (usize, &[Part])| {
+            let [a, b] = [&pair[0], &pair[1]];
+            let along = (a.shared[1] - a.base) - (b.shared[0] - b.base);
+            if i >= middle { along } else { -along }
         };
-        for (i, part) in parts.iter().enumerate() {
-            let anchor = anchor(part, i, middle);
-            let speed = part.strain.speed(anchor.1);
-            chain.strains.push(part.strain.slid(anchor.1));
-            chain.reach.push(part.arc.map(|a| (a - anchor.0) * speed));
-            if i >= middle && i + 1 < parts.len() {
-                chain.slides[i] = part.lambda[1] - anchor.1;
-            }
-            if i <= middle && i > 0 {
-                chain.slides[i - 1] = part.lambda[0] - anchor.1;
-            }
-            if i == middle {
-                chain.root = part.frame.carried(part.strain, anchor.0).slid(anchor.1);
-            }
+        let at_base = |part: &Part| part.strain.slid(part.base);
+        let reach = |(part, anchor): (&Part, &f64)| {
+            let speed = part.strain.speed(part.base);
+            part.arc.map(|a| (a - anchor) * speed)
+        };
+        Chain {
+            root: root
+                .frame
+                .carried(root.strain, anchors[middle])
+                .slid(root.base),
+            middle,
+            strains: parts.iter().map(at_base).collect(),
+            reach: parts.iter().zip(&anchors).map(reach).collect(),
+            slides: parts.windows(2).enumerate().map(slide).collect(),
         }
-        chain
     }
 
-    /// The same surface with its root in the middle and its base lines where
-    /// `lambda` says, at the first and last ruling of each patch.
-    pub(super) fn rebased(&self, lambda: &[[f64; 2]]) -> Chain {
+    /// The same surface with its root in the middle and the base line of each
+    /// patch at a given λ.
+    pub(super) fn rebased(&self, bases: &[f64]) -> Chain {
         let mut parts = self.parts();
-        parts
-            .iter_mut()
-            .zip(lambda)
-            .for_each(|(p, l)| p.lambda = *l);
+        parts.iter_mut().zip(bases).for_each(|(p, b)| p.base = *b);
         Chain::link(&parts)
     }
 
@@ -113,8 +127,10 @@ impl Chain {
         let whole = parts[patch];
         let half = 0.5 * (whole.arc[0] + whole.arc[1]);
         parts[patch].arc[1] = half;
+        parts[patch].shared[1] = 0.0;
         let mut second = whole;
         second.arc[0] = half;
+        second.shared[0] = 0.0;
         parts.insert(patch + 1, second);
         Chain::link(&parts)
     }
@@ -152,15 +168,12 @@ fn middle(parts: &[Part]) -> usize {
         .unwrap_or(parts.len() / 2)
 }
 
-/// Arc and λ of a patch's anchor.
-fn anchor(part: &Part, i: usize, middle: usize) -> (f64, f64) {
+/// Arc of a patch's anchor.
+fn anchor(part: &Part, i: usize, middle: usize) -> f64 {
     match i.cmp(&middle) {
-        std::cmp::Ordering::Less => (part.arc[1], part.lambda[1]),
-        std::cmp::Ordering::Greater => (part.arc[0], part.lambda[0]),
-        std::cmp::Ordering::Equal => {
-            let half = |a: [f64; 2]| 0.5 * (a[0] + a[1]);
-            (half(part.arc), half(part.lambda))
-        }
+        Ordering::Less => part.arc[1],
+        Ordering::Greater => part.arc[0],
+        Ordering::Equal => 0.5 * (part.arc[0] + part.arc[1]),
     }
 }
 
@@ -208,6 +221,77 @@ impl Placed {
             } else {
                 return (patch, foot);
             }
+        }
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    pub(in super::super) fn chain() -> Chain {
+        let root = Frame::new(
+            Point3::new(0.1, 0.2, 0.3),
+            Vector3::new(0.3, 1.0, -0.2),
+            Vector3::new(0.8, 0.1, 0.6),
+        );
+        let strain = |[g, k]: [f64; 2]| Strain { g, k };
+        Chain {
+            root: root.expect("not parallel"),
+            middle: 1,
+            strains: [[0.5, 1.5], [0.0, 0.9], [-0.4, -1.1], [0.3, 0.0]]
+                .map(strain)
+                .to_vec(),
+            reach: vec![[-0.5, 0.0], [-0.3, 0.4], [0.0, 0.6], [0.0, 0.4]],
+            slides: vec![0.2, -0.1, 0.15],
+        }
+    }
+
+    /// Both joint rulings of each patch, as lines: where they lie and whither.
+    fn rulings(chain: &Chain) -> Vec<(Point3<f64>, Vector3<f64>)> {
+        let frames = chain.frames();
+        let ends = (0..chain.len()).flat_map(|i| {
+            let end = |e: usize| frames[i].carried(chain.strains[i], chain.reach[i][e]);
+            [end(0), end(1)]
+        });
+        ends.map(|f| (f.at(-f.point.coords.dot(&f.ruling)), f.ruling))
+            .collect()
+    }
+
+    fn agree(a: &[(Point3<f64>, Vector3<f64>)], b: &[(Point3<f64>, Vector3<f64>)]) -> bool {
+        let near = |(i, (p, r)): (usize, &(Point3<f64>, Vector3<f64>))| {
+            (p - b[i].0).norm() + (r - b[i].1).norm() < 1e-13
+        };
+        a.len() == b.len() && a.iter().enumerate().all(near)
+    }
+
+    #[test]
+    fn neighbours_share_their_ruling() {
+        let lines = rulings(&chain());
+        for joint in lines[1..7].chunks(2) {
+            assert!(agree(&joint[..1], &joint[1..]));
+        }
+    }
+
+    #[test]
+    fn parts_link_to_the_same_chain_whatever_the_base_lines() {
+        let c = chain();
+        let same = Chain::link(&c.parts());
+        assert!(agree(&rulings(&c), &rulings(&same)));
+        let moved = c.rebased(&[0.1, -0.2, 0.3, 0.05]);
+        assert!(agree(&rulings(&c), &rulings(&moved)));
+        let speed = c.strains[2].speed(0.3);
+        assert!((moved.strains[2].k - c.strains[2].k / speed).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_cut_patch_is_the_same_surface() {
+        for patch in 0..4 {
+            let cut = chain().split(patch);
+            assert_eq!(cut.len(), 5);
+            let mut lines = rulings(&cut);
+            lines.drain(2 * patch + 1..2 * patch + 3);
+            assert!(agree(&rulings(&chain()), &lines), "patch {patch}");
         }
     }
 }

@@ -29,17 +29,112 @@
 //! Lee, Leopoldseder, Pottmann, Randrup & Wallner 1999 (GMIP 61); Leopoldseder
 //! & Pottmann 1998.
 
-#[allow(dead_code)] // Until the fit that makes chains stands on it.
 mod chain;
-#[allow(dead_code)] // As above.
+mod count;
 mod distances;
+mod engine;
+mod fit;
+#[cfg(test)]
+mod fit_tests;
+mod floor;
+mod ladder;
+mod minimax;
 pub mod outcome;
-#[allow(dead_code)] // As above.
+mod problem;
 mod report;
 pub mod request;
-#[allow(dead_code)] // As above.
+mod robust;
+mod segments;
 mod sheet;
+mod simplify;
+mod strip;
 pub mod target;
 
 pub use outcome::Outcome;
 pub use request::Request;
+
+use super::{Control, FitError, Issue};
+use request::{Goal, MOST_PIECES};
+use target::Target;
+
+/// Fits patches to a strip.
+///
+/// # Errors
+/// [`FitError::Invalid`] where the input is no strip or an option breaks a
+/// rule, [`FitError::Stopped`] when the control says so, [`FitError::Numerical`]
+/// where nothing that could be rolled comes near the strip.
+pub fn fit(request: &Request, control: &dyn Control) -> Result<Outcome, FitError> {
+    control.progress("reading", 0.0);
+    let issues = check_options(request);
+    if !issues.is_empty() {
+        return Err(FitError::Invalid(issues));
+    }
+    let target = Target::of(request, control)?;
+    let outcome = fit::fit_target(request, &target, control)?;
+    control.progress("done", 100.0);
+    Ok(outcome)
+}
+
+/// Every issue of a request; none: it can be fitted.
+#[must_use]
+pub fn validate(request: &Request) -> Vec<Issue> {
+    let mut issues = check_options(request);
+    if let Err(FitError::Invalid(more)) = Target::of(request, &crate::solver::Unwatched) {
+        issues.extend(more);
+    }
+    issues
+}
+
+/// Rules that options break.
+fn check_options(request: &Request) -> Vec<Issue> {
+    let options = &request.options;
+    let issue = |name: &str, code: &'static str, message: String, hint: &str| Issue {
+        path: vec!["options".to_owned(), name.to_owned()],
+        code,
+        message,
+        hint: Some(hint.to_owned()),
+    };
+    let mut issues = Vec::new();
+    match options.goal {
+        Goal::Pieces(pieces) if !(1..=MOST_PIECES).contains(&pieces) => issues.push(issue(
+            "pieces",
+            "pieces-out-of-range",
+            format!("{pieces} patches were asked for."),
+            &format!("Ask for 1 to {MOST_PIECES}."),
+        )),
+        Goal::Tolerance(tolerance) if !is_length(tolerance) => issues.push(issue(
+            "tolerance",
+            "not-a-length",
+            format!("The tolerance is {tolerance}."),
+            "Give a length above 0, in the unit of the strip.",
+        )),
+        _ => {}
+    }
+    for (name, value) in [
+        ("thickness", options.thickness),
+        ("min_bend_radius", options.min_bend_radius),
+    ] {
+        if let Some(value) = value.filter(|v| !is_length(*v)) {
+            issues.push(issue(
+                name,
+                "not-a-length",
+                format!("The value is {value}."),
+                "Give a length above 0, in the unit of the strip.",
+            ));
+        }
+    }
+    let classes = options.classes;
+    if !(classes.cones || classes.cylinders || classes.planes) {
+        issues.push(issue(
+            "classes",
+            "no-class",
+            "No kind of patch is allowed.".to_owned(),
+            "Allow cones, cylinders or planes.",
+        ));
+    }
+    issues
+}
+
+fn is_length(value: f64) -> bool {
+    value.is_finite() && value > 0.0
+}

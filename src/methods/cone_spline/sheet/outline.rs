@@ -53,6 +53,18 @@ impl Outline {
         points
     }
 
+    /// Whether a place lies between the short sides; to rounding.
+    pub fn is_between_ends(&self, place: &Point2<f64>, size: f64) -> bool {
+        /// Of the size: what rounding moves a place by.
+        const ROUNDING: f64 = 1e-12;
+        let sigma = |end: &[Point2<f64>]| {
+            let across: Vec<_> = end.iter().map(|p| Point2::new(p.y, p.x)).collect();
+            at(&forward(across), place.y)
+        };
+        let margin = ROUNDING * size;
+        sigma(&self.ends[0]) - margin <= place.x && place.x <= sigma(&self.ends[1]) + margin
+    }
+
     /// The part of the outline's inside between two values of σ, as a closed
     /// polygon that runs along side 0 first.
     pub fn between(&self, [from, to]: [f64; 2]) -> Vec<Point2<f64>> {

@@ -15,7 +15,7 @@ pub struct Sample {
     pub area: f64,
 }
 
-/// Places on all patches between the long sides, at the corners of a grid, so
+/// Places on all patches between the four sides, at the corners of a grid, so
 /// that rulings, joints and edges are among them.
 pub(super) fn of(strip: &Strip) -> Vec<Sample> {
     strip
@@ -36,6 +36,11 @@ fn patch(strip: &Strip, link: &Link) -> Vec<Sample> {
             .map(|p| link.place(&p).y);
         for j in 0..=CELLS[1] {
             let lambda = from + (to - from) * f64::from(j) / across;
+            // The end rulings may run past the short sides.
+            let running = Point2::new(link.start + s, lambda + link.offset);
+            if !strip.outline.is_between_ends(&running, strip.size) {
+                continue;
+            }
             let cell = link.length / along * (to - from).abs() / across;
             // The trapezoidal rule: half a cell at an edge.
             let share = half_at_ends(i, CELLS[0]) * half_at_ends(j, CELLS[1]);

@@ -91,7 +91,7 @@ fn settings(last: bool) -> Settings {
         // The mirrors alone leave a family of nets free: the damping is what
         // chooses the nearest of it.
         damping: 1e-8,
-        smoothing: 0.0,
         normal_equations: NormalEquations::Sparse,
+        ..Settings::default()
     }
 }
