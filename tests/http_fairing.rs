@@ -387,6 +387,59 @@ async fn a_table_may_lie_either_way() {
 }
 
 #[tokio::test]
+async fn a_table_comes_back_as_it_came() {
+    let service = real_service().await;
+    let mut text = String::from("WL;FP;3;2;1;½;AP\n");
+    for j in (0..5).rev() {
+        let z = 0.5 + f64::from(j);
+        let cells = [0.0, 2.5, 5.0, 7.5, 8.75, 10.0].map(|x| {
+            let y = (1.0 - ((x - 5.0) / 6.0_f64).powi(2)) * (0.5 + 0.3 * z);
+            format!("{y:.4}").replace('.', ",")
+        });
+        text.push_str(&format!("{j};{}\n", cells.join(";")));
+    }
+    let places = json!({
+        "stations": [10, 7.5, 5, 2.5, 1.25, 0],
+        "waterline_spacing": 1.0,
+    });
+    let job = json!({
+        "method": "fairing",
+        "units": "m",
+        "input": {"file": "offsets_transposed", "file_places": places},
+    });
+    let answer = post_form(
+        &service,
+        "/v1/jobs?wait=50",
+        &[("job", "", &job.to_string()), ("file", FILE, &text)],
+    )
+    .await;
+    assert_eq!(answer.status, StatusCode::OK, "{:?}", answer.body);
+    let told = answer.json();
+    let place = told["links"]["self"].as_str().unwrap();
+    let csv = service.get(&format!("{place}/result.csv")).await;
+    let csv = String::from_utf8(csv.body.to_vec()).unwrap();
+    let head: Vec<&str> = csv.lines().skip(1).take(3).collect();
+    assert_eq!(head[0], "waterline \\ station,z (m),FP,3,2,1,½,AP", "{csv}");
+    assert_eq!(head[1], "x (m),,10,7.5,5,2.5,1.25,0");
+    assert!(head[2].starts_with("4,4,"), "{}", head[2]);
+    let result = service.get(&format!("{place}/result")).await.json();
+    let table = &result["method_specific"]["table"];
+    assert_eq!(table["stations"][0], 0.0);
+    assert_eq!(table["station_names"][0], "AP");
+    // Names without places: an error that says how to give them.
+    let job = json!({"method": "fairing", "units": "m", "input": {"file": "offsets_transposed"}});
+    let problem = post_form(
+        &service,
+        "/v1/jobs",
+        &[("job", "", &job.to_string()), ("file", FILE, &text)],
+    )
+    .await
+    .problem(422, "invalid-job");
+    let hint = problem["errors"][0]["hint"].as_str().unwrap_or_default();
+    assert!(hint.contains("file_places"), "{problem}");
+}
+
+#[tokio::test]
 async fn a_form_that_is_wrong_says_where() {
     let service = idle_service().await;
     let job = json!({"method": "fairing", "units": "m", "input": {}}).to_string();

@@ -24,6 +24,8 @@ pub struct OffsetsDrawing {
     pub stations: Vec<f64>,
     /// Heights of the waterlines, in the user's order.
     pub waterlines: Vec<f64>,
+    /// The user's names of stations and waterlines, in the same orders.
+    pub names: [Option<Vec<String>>; 2],
     /// Half-breadths `[station][waterline]`.
     pub cells: Vec<Vec<Cell>>,
     /// Faired stations by their place.
@@ -134,26 +136,46 @@ fn block(drawing: &OffsetsDrawing, name: &str, value: impl Fn(&Cell) -> Option<f
         let cell = drawing.cells.get(i).and_then(|row| row.get(j));
         number(cell.and_then(&value))
     };
-    let [stations, waterlines] = [&drawing.stations, &drawing.waterlines];
-    let (corner, across, down) = match drawing.orientation {
-        Orientation::WaterlinesAcross => ("station \\ waterline", waterlines, stations),
-        Orientation::StationsAcross => ("waterline \\ station", stations, waterlines),
+    let [stations, waterlines] = [
+        ("station", "x", &drawing.stations, &drawing.names[0]),
+        ("waterline", "z", &drawing.waterlines, &drawing.names[1]),
+    ];
+    let (across, down) = match drawing.orientation {
+        Orientation::WaterlinesAcross => (waterlines, stations),
+        Orientation::StationsAcross => (stations, waterlines),
     };
     let mut text = field(&format!("{name} ({})", drawing.units)) + END_OF_RECORD;
-    let heads = across.iter().map(|v| number_field(*v));
-    let heads: Vec<String> = std::iter::once(corner.to_owned()).chain(heads).collect();
-    text.push_str(&heads.join(","));
-    text.push_str(END_OF_RECORD);
-    for (i, place) in down.iter().enumerate() {
-        let values = (0..across.len()).map(|j| match drawing.orientation {
+    let mut record = |start: &[String], cells: &mut dyn Iterator<Item = String>| {
+        let fields: Vec<String> = start.iter().cloned().chain(cells).collect();
+        text.push_str(&fields.join(","));
+        text.push_str(END_OF_RECORD);
+    };
+    // Names have their places in a column, or in a row, of their own.
+    let place_head = format!("{} ({})", down.1, drawing.units);
+    let corner = format!("{} \\ {}", down.0, across.0);
+    let start = |first: String| match down.3 {
+        Some(_) => vec![first, field(&place_head)],
+        None => vec![first],
+    };
+    let mut places = across.2.iter().map(|v| number_field(*v));
+    match across.3 {
+        Some(names) => {
+            record(&start(corner), &mut names.iter().map(|n| field(n)));
+            let mut head = vec![field(&format!("{} ({})", across.1, drawing.units))];
+            head.extend(down.3.is_some().then(String::new));
+            record(&head, &mut places);
+        }
+        None => record(&start(corner), &mut places),
+    }
+    for (i, place) in down.2.iter().enumerate() {
+        let mut values = (0..across.2.len()).map(|j| match drawing.orientation {
             Orientation::WaterlinesAcross => cell(i, j),
             Orientation::StationsAcross => cell(j, i),
         });
-        let fields: Vec<String> = std::iter::once(number_field(*place))
-            .chain(values)
-            .collect();
-        text.push_str(&fields.join(","));
-        text.push_str(END_OF_RECORD);
+        let name = down.3.as_ref().and_then(|names| names.get(i));
+        let mut start = Vec::from_iter(name.map(|n| field(n)));
+        start.push(number_field(*place));
+        record(&start, &mut values);
     }
     text
 }
@@ -259,6 +281,7 @@ pub(super) mod tests {
             title: "Pinnace <1>".into(),
             units: "m".into(),
             orientation: Orientation::WaterlinesAcross,
+            names: [None, None],
             station_curves: stations.iter().map(station).collect(),
             waterline_curves: waterlines.iter().map(waterline).collect(),
             buttock_curves: vec![(0.9, curve(vec![at(-4.0, 0.9), at(0.0, 0.1), at(4.0, 0.9)]))],
@@ -316,6 +339,34 @@ pub(super) mod tests {
                     let gap = read.expect("all filled") - cell.new.expect("all filled");
                     assert!(gap.abs() < 1e-9, "{gap}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_written_beside_their_places() {
+        use crate::formats::points_in::{Contents, Places, read_table};
+        let names = |n: &[&str]| Some(n.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>());
+        for orientation in [Orientation::WaterlinesAcross, Orientation::StationsAcross] {
+            let stations = names(&["Tr", "AP", "½", "1, aft", "FP"]);
+            for waterlines in [None, names(&["BL", "WL 1", "WL 2"])] {
+                let drawing = OffsetsDrawing {
+                    orientation,
+                    names: [stations.clone(), waterlines],
+                    ..hull()
+                };
+                let table = table(&drawing);
+                let new = table.split("\r\n\r\n").next().expect("blocks");
+                let read = read_table(new.as_bytes(), orientation, &Places::default());
+                let Contents::Offsets(offsets) = read.expect(new).contents else {
+                    panic!("not a table");
+                };
+                assert_eq!(offsets.stations, drawing.stations);
+                assert_eq!(offsets.waterlines, drawing.waterlines);
+                assert_eq!(
+                    [offsets.station_names, offsets.waterline_names],
+                    drawing.names
+                );
             }
         }
     }

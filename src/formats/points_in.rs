@@ -16,6 +16,7 @@ mod header;
 mod how;
 mod list;
 mod number;
+mod places;
 mod sniff;
 mod table;
 #[cfg(test)]
@@ -23,6 +24,7 @@ mod tests;
 
 pub use error::{Fault, ReadError};
 pub use how::{ColumnRead, DecimalMark, HowRead, Separator, Skipped};
+pub use places::{Places, Ruler};
 
 use cells::Lines;
 
@@ -78,6 +80,10 @@ pub struct OffsetTable {
     pub orientation: Orientation,
     /// Places of the stations, in the order of the file.
     pub stations: Vec<f64>,
+    /// Their names, where the file has names beside or instead of places.
+    pub station_names: Option<Vec<String>>,
+    /// The same for the waterlines.
+    pub waterline_names: Option<Vec<String>>,
     /// Heights of the waterlines, in the order of the file.
     pub waterlines: Vec<f64>,
     /// Half-breadths `[station][waterline]`; `None` where the cell was empty,
@@ -116,8 +122,24 @@ pub fn read(bytes: &[u8], expected: Expected) -> Result<Reading, ReadError> {
     let lines = Lines::new(text, style.first_line, style.separator);
     match expected {
         Expected::Points => list::read(lines),
-        Expected::Offsets(orientation) => table::read(lines, orientation),
+        Expected::Offsets(orientation) => table::read(lines, orientation, &Places::default()),
     }
+}
+
+/// Reads a table of offsets whose lines have names; the caller knows more of
+/// their places than the file.
+///
+/// # Errors
+/// As [`read()`].
+pub fn read_table(
+    bytes: &[u8],
+    orientation: Orientation,
+    places: &Places,
+) -> Result<Reading, ReadError> {
+    let text = decode(bytes)?;
+    let style = sniff::style(text)?;
+    let lines = Lines::new(text, style.first_line, style.separator);
+    table::read(lines, orientation, places)
 }
 
 /// The text of the file without its byte order mark.

@@ -68,6 +68,15 @@ pub enum Fault {
     NamesWithoutPlaces,
     /// The place of a station or the height of a waterline is missing.
     MissingPlace,
+    /// A name of which a spacing cannot tell the place.
+    NameWithoutPlace,
+    /// A list of places that does not go with the lines of the table.
+    PlaceCount {
+        /// Places in the list.
+        given: usize,
+        /// Lines in the table.
+        needed: usize,
+    },
     /// Two stations or two waterlines at the same place.
     RepeatedPlace,
     /// A table without a second row or column.
@@ -152,6 +161,10 @@ impl ReadError {
             Fault::NamesWithoutPlaces => {
                 "Write the place of each column as a number into the first row (heights of the waterlines, or places of the stations)."
             }
+            Fault::NameWithoutPlace => {
+                "A spacing places numbers (3, ½, 9 1/2) and perpendiculars at the ends; list the places of all lines instead, or write them into a row or column headed x, z or position."
+            }
+            Fault::PlaceCount { .. } => "List one place for each line of the table, in its order.",
             Fault::MissingPlace => "Give every station and every waterline its place as a number.",
             Fault::RepeatedPlace => "Leave one of the two out.",
             Fault::TooSmallTable => "A table has at least two stations and two waterlines.",
@@ -186,6 +199,10 @@ impl fmt::Display for Fault {
                 f.write_str("the columns have names but no places, so this row of numbers cannot be told from a first row")
             }
             Fault::MissingPlace => f.write_str("a place is missing"),
+            Fault::NameWithoutPlace => f.write_str("this name has no number"),
+            Fault::PlaceCount { given, needed } => {
+                write!(f, "{given} places are listed for {needed} lines of the table")
+            }
             Fault::RepeatedPlace => f.write_str("this place occurs twice"),
             Fault::TooSmallTable => f.write_str("the table is too small"),
         }

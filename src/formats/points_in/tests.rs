@@ -295,6 +295,161 @@ fn errors_of_tables() {
     }
 }
 
+/// A table as `read_table` has it: stations, waterlines, the first and the
+/// last cell of the first station.
+fn named(text: &str, orientation: Orientation, places: &Places) -> OffsetTable {
+    match read_table(text.as_bytes(), orientation, places).map(|r| r.contents) {
+        Ok(Contents::Offsets(table)) => table,
+        other => panic!("{text:?}: {other:?}"),
+    }
+}
+
+#[test]
+fn tables_as_yards_write_them() {
+    let across = Orientation::WaterlinesAcross;
+    let spaced = Places {
+        stations: Ruler::Spaced(2.5),
+        waterlines: Ruler::Spaced(0.5),
+    };
+    let stations = Places {
+        stations: Ruler::Listed(vec![-1.2, 0.0, 5.0, 10.0]),
+        waterlines: Ruler::Written,
+    };
+    // Stations, waterlines, half-breadths of the first station.
+    let written = Places::default();
+    for (text, orientation, places, x, z, first) in [
+        // Decimal commas, semicolons, units in the corner, "-" and empty cells.
+        (
+            "Aufmaße MS Anna (m);;;\nSpt [m];0,0;0,5;1,0\n0,00;-;0,25;0,5\n2,50;0,1;;0,9\n",
+            across,
+            &written,
+            vec![0.0, 2.5],
+            vec![0.0, 0.5, 1.0],
+            vec![None, Some(0.25), Some(0.5)],
+        ),
+        // Tabs, a comment, names above the heights.
+        (
+            "# lofted 1998\nWL\tBL\tWL1\tWL2\nz (m)\t0\t0.5\t1.5\n0\t0\t1\t2\n4\t0.5\t1.5\t2.5\n",
+            across,
+            &written,
+            vec![0.0, 4.0],
+            vec![0.0, 0.5, 1.5],
+            vec![Some(0.0), Some(1.0), Some(2.0)],
+        ),
+        // Names and places side by side, both ways.
+        (
+            "Station,x,WL 0,WL 1\nz,,0,0.6\nTr,-0.5,0.1,0.2\nAP,0,0.3,0.4\n½,1.25,0.5,0.6\n",
+            across,
+            &written,
+            vec![-0.5, 0.0, 1.25],
+            vec![0.0, 0.6],
+            vec![Some(0.1), Some(0.2)],
+        ),
+        // Station numbers with fractions and perpendiculars, a spacing.
+        (
+            "St.;WL 1;WL 2;WL 3\nAP;;0,1;0,2\n1/2;0,1;0,2;0,3\n1;0,2;0,3;0,4\n9 1/2;0,1;0,2;0,3\nFP;-;-;0,1\n",
+            across,
+            &spaced,
+            vec![0.0, 1.25, 2.5, 23.75, 25.0],
+            vec![0.5, 1.0, 1.5],
+            vec![None, Some(0.1), Some(0.2)],
+        ),
+        // Stations along the first row, forward perpendicular first.
+        (
+            "WL,FP,1,2,3,AP\n2,0.1,0.2,0.3,0.2,0.1\n1,0,0.1,0.2,0.1,0\n",
+            Orientation::StationsAcross,
+            &spaced,
+            vec![0.0, 2.5, 5.0, 7.5, 10.0],
+            vec![1.0, 0.5],
+            vec![Some(0.1), Some(0.0)],
+        ),
+        // A list of places for names that mean nothing to us.
+        (
+            "Frame;0;1\nTransom;1;2\nAP;1;2\nMidship;3;4\nStem;0;1\n",
+            across,
+            &stations,
+            vec![-1.2, 0.0, 5.0, 10.0],
+            vec![0.0, 1.0],
+            vec![Some(1.0), Some(2.0)],
+        ),
+        // Blanks, a row of units below the heights.
+        (
+            "Stn   0.0  0.5  1.0\n(-)   (m)  (m)  (m)\n0 0.1 0.2 0.3\n\n1 0.2 0.3 0.4\n",
+            across,
+            &written,
+            vec![0.0, 1.0],
+            vec![0.0, 0.5, 1.0],
+            vec![Some(0.1), Some(0.2), Some(0.3)],
+        ),
+        // Quoted decimal commas between commas; a byte order mark.
+        (
+            "\u{feff}st,\"0,5\",\"1,0\"\r\n0,\"1,25\",\"1,5\"\r\n1,\"1,75\",\"2,5\"\r\n",
+            across,
+            &written,
+            vec![0.0, 1.0],
+            vec![0.5, 1.0],
+            vec![Some(1.25), Some(1.5)],
+        ),
+    ] {
+        let table = named(text, orientation, places);
+        assert_eq!(table.stations, x, "{text:?}");
+        assert_eq!(table.waterlines, z, "{text:?}");
+        assert_eq!(table.half_breadths[0], first, "{text:?}");
+    }
+    let text = "Station,x,WL 0,WL 1\nz,,0,0.6\nTr,-0.5,0.1,0.2\nAP,0,0.3,0.4\n";
+    let table = named(text, across, &written);
+    let names = |n: &[&str]| Some(n.iter().map(|s| (*s).to_owned()).collect::<Vec<_>>());
+    assert_eq!(table.station_names, names(&["Tr", "AP"]));
+    assert_eq!(table.waterline_names, names(&["WL 0", "WL 1"]));
+    let plain = named("st;0;1\n0;1;2\n1;1;2\n", across, &written);
+    assert_eq!((plain.station_names, plain.waterline_names), (None, None));
+}
+
+#[test]
+fn names_that_cannot_be_placed_are_told() {
+    let spaced = Places {
+        stations: Ruler::Spaced(2.5),
+        waterlines: Ruler::Written,
+    };
+    let listed = Places {
+        stations: Ruler::Listed(vec![0.0, 1.0]),
+        waterlines: Ruler::Written,
+    };
+    for (text, places, line, expected) in [
+        (
+            "st;0;1\nTr;1;2\n1;1;2\n2;1;2\n",
+            &spaced,
+            2,
+            Fault::NameWithoutPlace,
+        ),
+        (
+            "st;0;1\n1;1;2\nAP;1;2\n2;1;2\n",
+            &spaced,
+            3,
+            Fault::NameWithoutPlace,
+        ),
+        (
+            "st;0;1\n1;1;2\n2/2;1;2\n2;1;2\n",
+            &spaced,
+            3,
+            Fault::RepeatedPlace,
+        ),
+        (
+            "st;0;1\nTr;1;2\n1;1;2\n2;1;2\n",
+            &listed,
+            2,
+            Fault::PlaceCount {
+                given: 2,
+                needed: 3,
+            },
+        ),
+    ] {
+        let error = read_table(text.as_bytes(), Orientation::WaterlinesAcross, places);
+        let error = error.expect_err("no place");
+        assert_eq!((error.line, error.fault), (line, expected), "{text:?}");
+    }
+}
+
 #[test]
 fn other_encodings_are_refused() {
     let error = read(b"x;y\nL\xe4nge;2\n", Expected::Points).expect_err("Latin-1");

@@ -2,10 +2,11 @@
 
 use super::file::input_for_file;
 use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
-use crate::formats::points_in::{self, Orientation};
+use crate::formats::points_in::{self, Fault, Orientation, ReadError, Ruler};
 use crate::http::dto::Point;
 use crate::http::dto::fairing::{
-    FairingInput, FairingOptions, FairingResult, FileHolds, to_request,
+    FairingInput, FairingOptions, FairingResult, FileHolds, FilePlaces, OffsetTable, TableLayout,
+    TableRows, to_request,
 };
 use crate::http::dto::job::{FairingJob, Normalized};
 use crate::http::problem::{ApiError, Code, FieldError};
@@ -120,49 +121,116 @@ fn take_file(job: &mut Value, file: &File) -> Result<Vec<String>, FieldError> {
         let message = "this must be one of points, offsets, offsets_transposed";
         FieldError::new("/input/file", "not-one-of", message)
     })?;
-    let expected = match holds {
-        FileHolds::Points => points_in::Expected::Points,
-        FileHolds::Offsets => points_in::Expected::Offsets(Orientation::WaterlinesAcross),
-        FileHolds::OffsetsTransposed => points_in::Expected::Offsets(Orientation::StationsAcross),
+    let places = input.remove("file_places");
+    let reading = match holds {
+        FileHolds::Points if places.is_some() => {
+            let message = "\"file_places\" goes with a file of offsets";
+            return Err(FieldError::new("/input/file_places", "unexpected", message));
+        }
+        FileHolds::Points => points_in::read(&file.bytes, points_in::Expected::Points),
+        FileHolds::Offsets | FileHolds::OffsetsTransposed => {
+            let orientation = match holds {
+                FileHolds::OffsetsTransposed => Orientation::StationsAcross,
+                _ => Orientation::WaterlinesAcross,
+            };
+            points_in::read_table(&file.bytes, orientation, &rulers(places)?)
+        }
     };
-    let reading = points_in::read(&file.bytes, expected).map_err(|e| {
-        let place = match e.column {
-            Some(column) => format!("file, line {}, column {column}", e.line),
-            None => format!("file, line {}", e.line),
-        };
-        FieldError::new(place, "unreadable", e.sentence())
-            .hint(e.hint())
-            .value(e.found)
-    })?;
+    let reading = reading.map_err(|e| unreadable(e, holds))?;
     match reading.contents {
         points_in::Contents::Points(list) => {
             input.insert("points".into(), point_list(&list)?);
         }
         points_in::Contents::Offsets(table) => {
-            let table = ascending(table);
-            let table = serde_json::json!({
-                "stations": table.stations,
-                "waterlines": table.waterlines,
-                "y": table.half_breadths,
-            });
-            input.insert("offsets".into(), table);
+            let (table, layout) = ascending(table);
+            let table = OffsetTable {
+                stations: table.stations,
+                waterlines: table.waterlines,
+                y: table.half_breadths,
+                station_names: table.station_names,
+                waterline_names: table.waterline_names,
+            };
+            if !layout.is_usual() {
+                input.insert("table_layout".into(), serde_json::json!(layout));
+            }
+            input.insert("offsets".into(), serde_json::json!(table));
         }
     }
     Ok(vec![format!("{}: {}", file.name, reading.how.sentence())])
 }
 
-/// A table that runs from the bow aft, or from the top down, turned round.
-fn ascending(mut table: points_in::OffsetTable) -> points_in::OffsetTable {
+/// Where the caller says that named lines are.
+fn rulers(places: Option<Value>) -> Result<points_in::Places, FieldError> {
+    let fault = |message: String| FieldError::new("/input/file_places", "bad-places", message);
+    let Some(places) = places else {
+        return Ok(points_in::Places::default());
+    };
+    let places: FilePlaces = serde_json::from_value(places).map_err(|e| fault(e.to_string()))?;
+    let ruler = |list: Option<Vec<f64>>, spacing: Option<f64>, what: &str| match (list, spacing) {
+        (Some(_), Some(_)) => Err(fault(format!(
+            "the {what}s have a list and a spacing; one is enough"
+        ))),
+        (Some(list), None) => Ok(Ruler::Listed(list)),
+        (None, Some(s)) if s.is_finite() && s > 0.0 => Ok(Ruler::Spaced(s)),
+        (None, Some(s)) => Err(fault(format!("the {what} spacing {s} is not above 0"))),
+        (None, None) => Ok(Ruler::Written),
+    };
+    Ok(points_in::Places {
+        stations: ruler(places.stations, places.station_spacing, "station")?,
+        waterlines: ruler(places.waterlines, places.waterline_spacing, "waterline")?,
+    })
+}
+
+/// Where a file could not be read, and what to do about it.
+fn unreadable(e: ReadError, holds: FileHolds) -> FieldError {
+    let place = match e.column {
+        Some(column) => format!("file, line {}, column {column}", e.line),
+        None => format!("file, line {}", e.line),
+    };
+    let of_a_place = match e.fault {
+        Fault::NamesWithoutPlaces | Fault::MissingPlace => true,
+        Fault::NotANumber | Fault::Fraction => e.column == Some(1) || e.line == 1,
+        _ => false,
+    };
+    let hint = if of_a_place && holds != FileHolds::Points {
+        format!("{} {GIVE_PLACES}", e.hint())
+    } else {
+        e.hint().to_owned()
+    };
+    FieldError::new(place, "unreadable", e.sentence())
+        .hint(hint)
+        .value(e.found)
+}
+
+/// What to do about names in a table.
+const GIVE_PLACES: &str = "Where stations or waterlines have names, give their places with the \
+    job, \"file_places\": {\"stations\": [...]} or {\"station_spacing\": ...}, or in the file in a \
+    row or column headed x, z or position.";
+
+/// A table that runs from the bow aft, or from the top down, turned round;
+/// and how it came.
+fn ascending(mut table: points_in::OffsetTable) -> (points_in::OffsetTable, TableLayout) {
     let falls = |v: &[f64]| v.windows(2).all(|p| p[1] < p[0]);
-    if falls(&table.stations) {
+    let layout = TableLayout {
+        rows: match table.orientation {
+            Orientation::WaterlinesAcross => TableRows::Stations,
+            Orientation::StationsAcross => TableRows::Waterlines,
+        },
+        stations_falling: falls(&table.stations),
+        waterlines_falling: falls(&table.waterlines),
+    };
+    let turn = |names: &mut Option<Vec<String>>| names.iter_mut().for_each(|n| n.reverse());
+    if layout.stations_falling {
         table.stations.reverse();
         table.half_breadths.reverse();
+        turn(&mut table.station_names);
     }
-    if falls(&table.waterlines) {
+    if layout.waterlines_falling {
         table.waterlines.reverse();
         table.half_breadths.iter_mut().for_each(|row| row.reverse());
+        turn(&mut table.waterline_names);
     }
-    table
+    (table, layout)
 }
 
 fn point_list(list: &points_in::PointList) -> Result<Value, FieldError> {

@@ -1,6 +1,7 @@
 //! From a stored result to what the file writers draw.
 
 use super::FairingResult;
+use super::TableRows;
 use super::result::{FairedKind, MoveResult};
 use super::table::CellWord;
 use crate::formats::brep::SheetModel;
@@ -141,12 +142,30 @@ impl FairingResult {
             };
             cells.push(row.iter().enumerate().map(cell).collect());
         }
+        let [mut stations, mut waterlines] = [table.stations.clone(), table.waterlines.clone()];
+        let mut names = [table.station_names.clone(), table.waterline_names.clone()];
+        if table.layout.stations_falling {
+            stations.reverse();
+            cells.reverse();
+            names[0].iter_mut().for_each(|n| n.reverse());
+        }
+        if table.layout.waterlines_falling {
+            waterlines.reverse();
+            cells
+                .iter_mut()
+                .for_each(|row: &mut Vec<Cell>| row.reverse());
+            names[1].iter_mut().for_each(|n| n.reverse());
+        }
         Ok(OffsetsDrawing {
             title: self.title(),
             units: self.units.to_string(),
-            orientation: Orientation::WaterlinesAcross,
-            stations: table.stations.clone(),
-            waterlines: table.waterlines.clone(),
+            orientation: match table.layout.rows {
+                TableRows::Stations => Orientation::WaterlinesAcross,
+                TableRows::Waterlines => Orientation::StationsAcross,
+            },
+            stations,
+            waterlines,
+            names,
             cells,
             station_curves: self.family("station")?,
             waterline_curves: self.family("waterline")?,

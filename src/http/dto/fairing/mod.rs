@@ -51,10 +51,42 @@ pub struct FairingInput {
     /// A table of offsets.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub offsets: Option<OffsetTable>,
+    /// How a table of offsets is written as a file; one that came as a file is
+    /// written as it came.
+    #[serde(default, skip_serializing_if = "TableLayout::is_usual")]
+    pub table_layout: TableLayout,
     /// Only in a form that comes with a file: what the file holds, `points`
     /// when nothing is said.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<FileHolds>,
+    /// Only with a file of offsets whose stations or waterlines have names in
+    /// place of places ("AP", "9 1/2", "WL 3"): where they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file_places: Option<FilePlaces>,
+}
+
+/// Places of the stations and waterlines of a file that names them. Of each a
+/// list or a spacing.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FilePlaces {
+    /// x of the stations, in the order of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 2, max_items = 10_000)]
+    pub stations: Option<Vec<f64>>,
+    /// z of the waterlines, in the order of the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 2, max_items = 10_000)]
+    pub waterlines: Option<Vec<f64>>,
+    /// Distance from one station number to the next; a perpendicular at the
+    /// end of a table has the next whole number beyond its neighbour.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(exclusive_minimum = 0)]
+    pub station_spacing: Option<f64>,
+    /// Distance from one waterline number to the next.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(exclusive_minimum = 0)]
+    pub waterline_spacing: Option<f64>,
 }
 
 fn yes() -> bool {
@@ -100,6 +132,46 @@ pub struct OffsetTable {
     /// null where nothing was measured.
     #[schema(min_items = 2, max_items = 10_000)]
     pub y: Vec<Vec<Option<f64>>>,
+    /// Your names of the stations, which are given back.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 2, max_items = 10_000)]
+    pub station_names: Option<Vec<String>>,
+    /// Your names of the waterlines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(min_items = 2, max_items = 10_000)]
+    pub waterline_names: Option<Vec<String>>,
+}
+
+/// How a table of offsets lies on paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schema(default)]
+pub struct TableLayout {
+    /// What its rows are.
+    pub rows: TableRows,
+    /// Whether it begins with the station of the greatest x.
+    pub stations_falling: bool,
+    /// Whether it begins with the highest waterline.
+    pub waterlines_falling: bool,
+}
+
+impl TableLayout {
+    /// Whether it is the one that nothing need be said of.
+    #[must_use]
+    pub fn is_usual(&self) -> bool {
+        *self == TableLayout::default()
+    }
+}
+
+/// What the rows of a table of offsets are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TableRows {
+    /// One station a row.
+    #[default]
+    Stations,
+    /// One waterline a row.
+    Waterlines,
 }
 
 /// What is asked of the fair shape. Lengths in the job's unit. An option that
@@ -151,6 +223,24 @@ pub struct FairingOptions {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(max_items = 10_000)]
     pub knuckles: Vec<Index>,
+    /// Stations of a table of offsets, by index, across which the waterlines
+    /// may have a corner.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(max_items = 10_000)]
+    pub knuckle_stations: Vec<Index>,
+    /// Waterlines of a table of offsets, by index, across which the stations
+    /// may have a corner: chines and knuckles of the side.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(max_items = 10_000)]
+    pub knuckle_waterlines: Vec<Index>,
+    /// Rows of a grid, by index, across which the surface may have a corner.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(max_items = 10_000)]
+    pub knuckle_rows: Vec<Index>,
+    /// Columns of a grid, by index, across which the surface may have a corner.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[schema(max_items = 10_000)]
+    pub knuckle_columns: Vec<Index>,
     /// Stretches of a curve that must be straight, from point to point.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[schema(max_items = 10_000)]
@@ -178,6 +268,10 @@ pub struct FairingOptions {
     /// from the points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub control_net: Option<IndexPair>,
+    /// A place near which a surface's points that close all round (a tube) are
+    /// cut along their axis; without it a tube is refused.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut: Option<Point>,
     /// Whether points that look like slips lose their hold on the shape.
     pub robust: bool,
     /// Which algorithm fits.

@@ -5,7 +5,7 @@ use super::super::index::IndexPair;
 use super::super::job::{FairingJob, FairingMethod};
 use super::super::result::{Contents, result_of_a_method};
 use super::table::OffsetsResult;
-use super::{FairingDiagnostics, FairingOptions};
+use super::{FairingDiagnostics, FairingOptions, OffsetTable};
 use crate::methods::fairing::{Outcome, Request, curve, offsets, surface};
 use nalgebra::Point3;
 use serde::{Deserialize, Serialize};
@@ -208,8 +208,12 @@ pub(in crate::http) fn words(outcome: &Outcome) -> (bool, Vec<String>, Vec<Strin
         Outcome::Curve(o) => (o.within_limits, o.summary.clone(), o.warnings.clone()),
         Outcome::Surface(o) => (o.within_tolerance, o.summary.clone(), o.warnings.clone()),
         Outcome::Offsets(o) => {
-            let warnings = [o.notes.clone(), o.surface.warnings.clone()].concat();
-            (o.surface.within_tolerance, o.summary.clone(), warnings)
+            // The surface's own warnings are among the notes.
+            (
+                o.surface.within_tolerance,
+                o.summary.clone(),
+                o.notes.clone(),
+            )
         }
     }
 }
@@ -346,19 +350,33 @@ fn of_offsets(o: &offsets::Outcome, name: &str, job: &FairingJob) -> Parts {
         }
     });
     let mut curves = Vec::new();
-    for (x, pieces) in stations.iter().zip(&o.stations) {
-        curves.extend(
-            pieces
-                .iter()
-                .map(|c| NamedCurve::new(&format!("x = {x}"), "station", c)),
-        );
-    }
-    for (z, pieces) in waterlines.iter().zip(&o.waterlines) {
-        curves.extend(
-            pieces
-                .iter()
-                .map(|c| NamedCurve::new(&format!("z = {z}"), "waterline", c)),
-        );
+    let names = |names: fn(&OffsetTable) -> &Option<Vec<String>>| {
+        given.and_then(|t| names(t).as_deref()).unwrap_or_default()
+    };
+    let families = [
+        (
+            "x",
+            "station",
+            stations,
+            &o.stations,
+            names(|t| &t.station_names),
+        ),
+        (
+            "z",
+            "waterline",
+            waterlines,
+            &o.waterlines,
+            names(|t| &t.waterline_names),
+        ),
+    ];
+    for (axis, role, places, pieces, names) in families {
+        for (i, (place, pieces)) in places.iter().zip(pieces).enumerate() {
+            let name = match names.get(i) {
+                Some(name) => format!("{name} ({axis} = {place})"),
+                None => format!("{axis} = {place}"),
+            };
+            curves.extend(pieces.iter().map(|c| NamedCurve::new(&name, role, c)));
+        }
     }
     for buttock in &o.buttocks {
         let named = |c| NamedCurve::new(&format!("y = {}", buttock.y), "buttock", c);
@@ -367,7 +385,7 @@ fn of_offsets(o: &offsets::Outcome, name: &str, job: &FairingJob) -> Parts {
     let specific = FairingSpecific {
         kind: FairedKind::Offsets,
         slips: slips.collect(),
-        table: Some(OffsetsResult::new(o, stations, waterlines)),
+        table: given.map(|table| OffsetsResult::new(o, table, job.input.table_layout)),
         ..found
     };
     (surfaces, curves, specific)

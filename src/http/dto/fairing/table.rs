@@ -1,5 +1,6 @@
 //! A faired table of offsets on the wire.
 
+use super::{OffsetTable, TableLayout};
 use crate::methods::fairing::offsets;
 use crate::methods::fairing::offsets::outcome::CellKind;
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,12 @@ pub struct OffsetsResult {
     pub stations: Vec<f64>,
     /// z of the waterlines.
     pub waterlines: Vec<f64>,
+    /// Your names of the stations.
+    pub station_names: Option<Vec<String>>,
+    /// Your names of the waterlines.
+    pub waterline_names: Option<Vec<String>>,
+    /// How the table is written as a file.
+    pub layout: TableLayout,
     /// Old, new and move of every cell.
     pub cells: Vec<Vec<CellResult>>,
 }
@@ -46,7 +53,7 @@ pub enum CellWord {
 impl OffsetsResult {
     /// The table of an outcome.
     #[must_use]
-    pub fn new(outcome: &offsets::Outcome, stations: &[f64], waterlines: &[f64]) -> Self {
+    pub fn new(outcome: &offsets::Outcome, table: &OffsetTable, layout: TableLayout) -> Self {
         let cell = |c: &offsets::outcome::Cell| CellResult {
             kind: match c.kind {
                 CellKind::Measured => CellWord::Measured,
@@ -59,8 +66,11 @@ impl OffsetsResult {
             change: c.change,
         };
         OffsetsResult {
-            stations: stations.to_vec(),
-            waterlines: waterlines.to_vec(),
+            stations: table.stations.clone(),
+            waterlines: table.waterlines.clone(),
+            station_names: table.station_names.clone(),
+            waterline_names: table.waterline_names.clone(),
+            layout,
             cells: (outcome.table.iter())
                 .map(|row| row.iter().map(cell).collect())
                 .collect(),

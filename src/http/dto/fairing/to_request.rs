@@ -6,6 +6,7 @@
 //! given, that options go with it, and coordinates against the unit.
 
 use super::super::curves::{Point, check_points};
+use super::super::index::Index;
 use super::super::job::Units;
 use super::{FairingInput, FairingOptions, FairingSolver, MeasuredPoint, OffsetTable, PointsKind};
 use crate::http::problem::FieldError;
@@ -27,6 +28,11 @@ pub fn to_request(
         let fault = FieldError::new("/input/file", "unexpected", message);
         faults.push(fault.hint("post multipart/form-data with the parts \"job\" and \"file\""));
     }
+    if input.file_places.is_some() {
+        let message = "\"file_places\" goes with a file of offsets";
+        let fault = FieldError::new("/input/file_places", "unexpected", message);
+        faults.push(fault.hint("a table in the job has its places in stations and waterlines"));
+    }
     let request = match (&input.points, &input.grid, &input.offsets) {
         (Some(points), None, None) => loose(points, input, options, (units, &mut faults)),
         (None, Some(grid), None) => {
@@ -37,6 +43,7 @@ pub fn to_request(
         }
         (None, None, Some(table)) => {
             refuse(options, &TABLE_OPTIONS, "a table of offsets", &mut faults);
+            check_names(table, &mut faults);
             Some(offsets_request(table, options))
         }
         (None, None, None) => {
@@ -68,7 +75,8 @@ const CURVE_OPTIONS: [&str; 12] = [
     "control_points",
     "solver",
 ];
-const SURFACE_OPTIONS: [&str; 8] = [
+const SURFACE_OPTIONS: [&str; 9] = [
+    "cut",
     "tolerances",
     "stiffness",
     "locked",
@@ -78,7 +86,9 @@ const SURFACE_OPTIONS: [&str; 8] = [
     "solver",
     "light",
 ];
-const GRID_OPTIONS: [&str; 9] = [
+const GRID_OPTIONS: [&str; 11] = [
+    "knuckle_rows",
+    "knuckle_columns",
     "tolerances",
     "stiffness",
     "locked",
@@ -89,7 +99,14 @@ const GRID_OPTIONS: [&str; 9] = [
     "light",
     "boundary_factor",
 ];
-const TABLE_OPTIONS: [&str; 4] = ["cell_tolerances", "locked_cells", "buttocks", "light"];
+const TABLE_OPTIONS: [&str; 6] = [
+    "cell_tolerances",
+    "locked_cells",
+    "knuckle_stations",
+    "knuckle_waterlines",
+    "buttocks",
+    "light",
+];
 
 /// A fault for every option that was given and does not go with the input.
 fn refuse(options: &FairingOptions, allowed: &[&str], input: &str, faults: &mut Vec<FieldError>) {
@@ -104,6 +121,10 @@ fn refuse(options: &FairingOptions, allowed: &[&str], input: &str, faults: &mut 
         ("end_tangents", o.end_tangents.is_some()),
         ("end_curvatures", o.end_curvatures.is_some()),
         ("knuckles", !o.knuckles.is_empty()),
+        ("knuckle_stations", !o.knuckle_stations.is_empty()),
+        ("knuckle_waterlines", !o.knuckle_waterlines.is_empty()),
+        ("knuckle_rows", !o.knuckle_rows.is_empty()),
+        ("knuckle_columns", !o.knuckle_columns.is_empty()),
         ("straight", !o.straight.is_empty()),
         ("energy", o.energy.is_some()),
         ("surface_energy", o.surface_energy.is_some()),
@@ -112,6 +133,7 @@ fn refuse(options: &FairingOptions, allowed: &[&str], input: &str, faults: &mut 
         ("control_points", o.control_points.is_some()),
         ("control_net", o.control_net.is_some()),
         ("solver", o.solver != FairingSolver::default()),
+        ("cut", o.cut.is_some()),
         ("buttocks", !o.buttocks.is_empty()),
         ("light", o.light.is_some()),
     ];
@@ -232,6 +254,8 @@ fn surface_request(points: surface::request::Points, o: &FairingOptions) -> Requ
             }),
             boundary_factor: o.boundary_factor,
             control_points: o.control_net.map(|n| n.numbers()),
+            knuckles: [&o.knuckle_rows, &o.knuckle_columns].map(|k| indices(k)),
+            cut: o.cut.map(Into::into),
             robust: o.robust,
             solver: match o.solver {
                 FairingSolver::Own => Solver::Own,
@@ -242,9 +266,28 @@ fn surface_request(points: surface::request::Points, o: &FairingOptions) -> Requ
     })
 }
 
+fn indices(list: &[Index]) -> Vec<usize> {
+    list.iter().map(|i| i.0).collect()
+}
+
 fn light(o: &FairingOptions) -> Vector3<f64> {
     let usual = surface::request::Options::default().light;
     o.light.map_or(usual, |l| Vector3::from(l.0))
+}
+
+/// One name a line.
+fn check_names(table: &OffsetTable, faults: &mut Vec<FieldError>) {
+    let families = [
+        ("station", &table.station_names, table.stations.len()),
+        ("waterline", &table.waterline_names, table.waterlines.len()),
+    ];
+    for (family, names, lines) in families {
+        if let Some(names) = names.as_ref().filter(|n| n.len() != lines) {
+            let message = format!("{} names for {lines} {family}s", names.len());
+            let place = format!("/input/offsets/{family}_names");
+            faults.push(FieldError::new(place, "wrong-count", message));
+        }
+    }
 }
 
 fn offsets_request(table: &OffsetTable, o: &FairingOptions) -> Request {
@@ -259,6 +302,8 @@ fn offsets_request(table: &OffsetTable, o: &FairingOptions) -> Request {
                 .map(|c| (c.station.0, c.waterline.0, c.tolerance))
                 .collect(),
             locked: o.locked_cells.iter().map(|c| c.numbers()).collect(),
+            knuckle_stations: indices(&o.knuckle_stations),
+            knuckle_waterlines: indices(&o.knuckle_waterlines),
             robust: o.robust,
             buttocks: o.buttocks.clone(),
             light: light(o),

@@ -13,6 +13,7 @@ use surface::grid_fit::{DEGREE, order, stretched};
 use surface::net::{Net, Sheet};
 use surface::outcome::Parametrisation;
 use surface::region::Region;
+use surface::report::moved;
 use surface::request::{Points, Tolerance};
 use surface::springs::{Springs, gather};
 use surface::stiffness::choose;
@@ -57,8 +58,9 @@ pub(super) fn fair(request: &Request, control: &dyn Control) -> Result<Faired, F
     let region = region(&families, &kinds);
     let bounded = surface::bounded(&task, &fit, control)?;
     let found = (Parametrisation::Grid, &region);
-    let surface = surface::conclude(&task, (&fit, bounded), found, control)?;
+    let mut surface = surface::conclude(&task, (&fit, bounded), found, control)?;
     let at = families.map(|f| f.at);
+    keep_outboard(&mut surface, &mut kinds, &at);
     Ok(Faired {
         table: table(request, &kinds, (&surface, &at)),
         slips: slips(request, &surface),
@@ -107,6 +109,7 @@ fn task(request: &Request, kinds: &[Vec<CellKind>]) -> Result<Task, FitError> {
         locked: o.locked.iter().map(|[i, j]| i * columns + j).collect(),
         freedom: [false, true, false],
         robust: o.robust,
+        knuckles: [o.knuckle_stations.clone(), o.knuckle_waterlines.clone()],
         light: o.light,
         ..surface::request::Options::default()
     };
@@ -120,9 +123,10 @@ fn families(request: &Request, task: &Task) -> Result<[Lines; 2], FitError> {
     let middle = task.frame.middle;
     let unit =
         |x: &[f64], m: f64| -> Vec<f64> { x.iter().map(|x| (x - m) / task.frame.size).collect() };
+    let [across, up] = &task.knuckles;
     Ok([
-        lines(&unit(&request.stations, middle.x), &steps[0], DEGREE)?,
-        lines(&unit(&request.waterlines, middle.z), &steps[1], DEGREE)?,
+        lines(&unit(&request.stations, middle.x), &steps[0], DEGREE)?.creased(across)?,
+        lines(&unit(&request.waterlines, middle.z), &steps[1], DEGREE)?.creased(up)?,
     ])
 }
 
@@ -141,7 +145,12 @@ fn field(task: &Task, families: &[Lines; 2], control: &dyn Control) -> Result<Fi
         value: task.points.iter().map(|p| [p.y]).collect(),
         weight: task.weight.clone(),
     };
-    let (energy, model) = stretched(task, (&net, &springs), (order(*size), 1.0), control)?;
+    let (energy, model) = stretched(
+        task,
+        (&net, &springs),
+        (order(*size, &task.knuckles), 1.0),
+        control,
+    )?;
     let (chosen, weight, noise) = if task.robust {
         let r = robust(&net, &springs, (&energy, model), (None, control))?;
         (r.chosen, r.weight, r.scale)
@@ -163,6 +172,7 @@ fn field(task: &Task, families: &[Lines; 2], control: &dyn Control) -> Result<Fi
         sheet: Sheet {
             net,
             control: points,
+            plane: false,
         },
         at,
         lambda: chosen.lambda,
@@ -206,6 +216,33 @@ fn endings(
     count
 }
 
+/// Half-breadths end at the centreline: where the surface passes behind it the
+/// hull has ended just before, a measured cell keeps zero and a missing one
+/// lies outside.
+fn keep_outboard(surface: &mut surface::Outcome, kinds: &mut [Vec<CellKind>], at: &[Vec<f64>; 2]) {
+    let told = moved(surface);
+    for m in surface.moves.iter_mut().filter(|m| m.now.y < 0.0) {
+        // The cell was at least 0, so that this is the nearer place.
+        m.distance = (m.distance.abs() + m.now.y).max(0.0).copysign(m.distance);
+        m.now.y = 0.0;
+    }
+    let lengths = surface.moves.iter().map(|m| m.distance.abs());
+    surface.move_max = lengths.clone().fold(0.0, f64::max);
+    let square: f64 = lengths.map(|d| d * d).sum();
+    surface.move_rms = (square / surface.moves.len().max(1) as f64).sqrt();
+    let now = moved(surface);
+    if let Some(verdict) = surface.summary.first_mut() {
+        *verdict = verdict.replacen(&told, &now, 1);
+    }
+    for (row, u) in kinds.iter_mut().zip(&at[0]) {
+        for (kind, v) in row.iter_mut().zip(&at[1]) {
+            if *kind == CellKind::Filled && surface.surface.point(*u, *v).y < 0.0 {
+                *kind = CellKind::Outside;
+            }
+        }
+    }
+}
+
 /// The hull in (u, v): measured and filled cells.
 fn region(families: &[Lines; 2], kinds: &[Vec<CellKind>]) -> Region {
     let inside = kinds.iter().flatten().map(|k| *k != CellKind::Outside);
@@ -220,7 +257,8 @@ fn table(
 ) -> Vec<Vec<Cell>> {
     let cell = |i: usize, j: usize| {
         let (kind, old) = (kinds[i][j], request.half_breadths[i][j]);
-        let new = (kind != CellKind::Outside).then(|| surface.surface.point(at[0][i], at[1][j]).y);
+        let place = || surface.surface.point(at[0][i], at[1][j]);
+        let new = (kind != CellKind::Outside).then(|| place().y.max(0.0));
         Cell {
             kind,
             old,
@@ -239,7 +277,7 @@ fn slips(request: &Request, surface: &surface::Outcome) -> Vec<CellSlip> {
         station: s.index / columns,
         waterline: s.index % columns,
         given: s.given.y,
-        expected: s.expected.y,
+        expected: s.expected.y.max(0.0),
         sigmas: s.sigmas,
         confidence: s.confidence,
     };

@@ -132,6 +132,19 @@ fn options(request: &Request, issues: &mut Vec<Issue>) {
         let path = ["options", "locked", &k.to_string()];
         cell_exists(*cell, size, (&path, &mut *issues));
     }
+    let families = [
+        ("knuckle_stations", &o.knuckle_stations, size[0]),
+        ("knuckle_waterlines", &o.knuckle_waterlines, size[1]),
+    ];
+    for (field, lines, count) in families {
+        for (k, line) in lines.iter().enumerate() {
+            if *line == 0 || line + 1 >= count {
+                let message = format!("line {line} is not an inner one of {count}");
+                let path = ["options", field, &k.to_string()];
+                issues.push(issue(&path, "no-such-line", message, None));
+            }
+        }
+    }
     for (k, y) in o.buttocks.iter().enumerate() {
         if !(y.is_finite() && *y > 0.0) {
             let message = format!("the buttock at {y} is not above 0");

@@ -6,9 +6,10 @@
 //! through such parameters were not monotone they are drawn towards the
 //! places themselves, for which it is a straight line.
 
-use crate::geometry::{Knots, basis_jet, gram};
+use crate::geometry::{BSplineCurve, Knots, SplineError, basis_jet, gram};
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
+use nalgebra::Point3;
 
 /// Steps from the distances to the places.
 const BLENDS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -90,6 +91,35 @@ fn through(places: &[f64], at: Vec<f64>, degree: usize) -> Result<Lines, FitErro
         }
     }
     Ok(Lines { knots, at, control })
+}
+
+impl Lines {
+    /// The same places with room for a knuckle at some of the lines: knots are
+    /// inserted until only continuity is left.
+    ///
+    /// # Errors
+    /// [`FitError::Numerical`] for the first or last line.
+    pub(super) fn creased(self, knuckles: &[usize]) -> Result<Self, FitError> {
+        let numerical = |e: SplineError| FitError::Numerical(e.to_string());
+        let degree = self.knots.degree();
+        let lacking = |u: f64| degree.saturating_sub(self.knots.multiplicity(u));
+        let inserted: Vec<f64> = knuckles
+            .iter()
+            .flat_map(|k| std::iter::repeat_n(self.at[*k], lacking(self.at[*k])))
+            .collect();
+        if inserted.is_empty() {
+            return Ok(self);
+        }
+        let points = self.control.iter().map(|x| Point3::new(*x, 0.0, 0.0));
+        let line = BSplineCurve::from_knots(self.knots, points.collect(), None);
+        let line = line.map_err(numerical)?;
+        let line = line.insert_knots(&inserted).map_err(numerical)?;
+        Ok(Lines {
+            knots: line.knot_vector().clone(),
+            at: self.at,
+            control: line.control_points().iter().map(|p| p.x).collect(),
+        })
+    }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -27,6 +27,11 @@ pub struct Options {
     pub cell_tolerances: Vec<(usize, usize, f64)>,
     /// Cells (station, waterline) that must not change.
     pub locked: Vec<[usize; 2]>,
+    /// Stations (by index, not the first or last) across which the waterlines
+    /// may have a knuckle.
+    pub knuckle_stations: Vec<usize>,
+    /// Waterlines (by index) across which the stations may have a knuckle.
+    pub knuckle_waterlines: Vec<usize>,
     /// Gross errors lose their pull instead of bending the surface.
     pub robust: bool,
     /// y of the buttocks to draw; empty: at ¼, ½ and ¾ of the greatest
@@ -42,6 +47,8 @@ impl Default for Options {
             tolerance: None,
             cell_tolerances: Vec::new(),
             locked: Vec::new(),
+            knuckle_stations: Vec::new(),
+            knuckle_waterlines: Vec::new(),
             robust: false,
             buttocks: Vec::new(),
             light: crate::methods::fairing::surface::request::Options::default().light,

@@ -149,6 +149,81 @@ fn gaps_inside_are_filled_and_marked() {
 }
 
 #[test]
+fn a_chine_is_kept_where_it_is_told() {
+    let sigma = 0.002;
+    let noise = &mut Noise::new(10);
+    // Above the fifth waterline the side stands upright.
+    let chined = |x: f64, z: f64| hull(x, z.min(1.0)) + 0.02 * (z - 1.0).max(0.0);
+    let mut request = table(0.0, 1);
+    request.stations.retain(|x| x.abs() < 8.0);
+    request.half_breadths = (request.stations.iter())
+        .map(|x| {
+            let cell = |z: &f64| Some(chined(*x, *z) + sigma * noise.normal());
+            request.waterlines.iter().map(cell).collect()
+        })
+        .collect();
+    // How much dy/dz of the middle station changes across z = 1.
+    let corner = |o: &Outcome| {
+        let station = &o.stations[request.stations.len() / 2][0];
+        let [a, b] = station.domain();
+        let at = |t: f64| station.point(a + t * (b - a));
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if at(middle).z < 1.0 {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        let slope = |h: f64| (at(low + h).y - at(low).y) / (at(low + h).z - at(low).z);
+        slope(-1e-4) - slope(1e-4)
+    };
+    let smooth = corner(&done(&request));
+    let mut asked = request.clone();
+    asked.options.knuckle_waterlines = vec![4];
+    let kept = corner(&done(&asked));
+    let want = (hull(0.0, 1.0) - hull(0.0, 1.0 - 1e-6)) / 1e-6 - 0.02;
+    assert!((kept - want).abs() < 0.1 * want, "{kept} for {want}");
+    assert!(smooth.abs() < 0.05 * want, "{smooth}");
+    asked.options.knuckle_waterlines = vec![8];
+    let issues = validate(&asked);
+    assert_eq!(issues[0].path.join("/"), "options/knuckle_waterlines/0");
+}
+
+/// A stem that ends between two stations: the surface passes behind the
+/// centreline at the next one, the table does not.
+#[test]
+fn no_half_breadth_is_negative() {
+    for (seed, tolerance) in [(8, None), (9, Some(0.06))] {
+        let mut request = table(0.02, seed);
+        request.options.tolerance = tolerance;
+        // Zeros a little beyond the ending, as tables have them, and a gap.
+        request.half_breadths[0][4] = None;
+        for (row, x) in request.half_breadths.iter_mut().zip(&request.stations) {
+            for (cell, z) in row.iter_mut().zip(&request.waterlines) {
+                if hull(*x, *z) < 0.05 {
+                    *cell = cell.map(|_| 0.0);
+                }
+            }
+        }
+        let outcome = done(&request);
+        let mut at_zero = 0;
+        for cell in outcome.table.iter().flatten() {
+            let new = cell.new.unwrap_or(1.0);
+            assert!(new >= 0.0, "{cell:?}");
+            at_zero += usize::from(new == 0.0);
+        }
+        assert!(at_zero > 0, "no ending was behind the centreline");
+        for m in &outcome.surface.moves {
+            assert!(m.now.y >= 0.0);
+            let old = request.half_breadths[m.index / 9][m.index % 9].expect("measured");
+            assert!(((m.now.y - old).abs() - m.distance.abs()).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
 fn zeros_beyond_the_hull_do_not_bend_it() {
     let with = done(&table(0.005, 6));
     let mut without = table(0.005, 6);

@@ -35,19 +35,66 @@ impl Foot {
     }
 }
 
-/// A step that promises to lower the squared distance by less than this share
-/// of it changes nothing.
-const SETTLED: f64 = 1e-10;
+/// How far a foot is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in super::super) struct Effort {
+    /// Most steps.
+    steps: usize,
+    /// A step that promises to lower the squared distance by less than this
+    /// share of it is not made.
+    settled: f64,
+    /// The axis along which foot and point must agree.
+    held: Option<usize>,
+}
+
+impl Effort {
+    /// As far as numbers can tell, in at most so many steps.
+    pub(in super::super) const fn exact(steps: usize) -> Self {
+        Effort {
+            steps,
+            settled: 1e-10,
+            held: None,
+        }
+    }
+
+    /// Distances to a millionth of themselves: for lists and statistics. One
+    /// step from a place nearby is enough for most points.
+    pub(in super::super) const fn listed(steps: usize) -> Self {
+        Effort {
+            steps,
+            settled: 1e-6,
+            held: None,
+        }
+    }
+
+    /// The same in the plane of each point across an axis.
+    pub(in super::super) const fn holding(self, held: Option<usize>) -> Self {
+        Effort { held, ..self }
+    }
+
+    /// A vector as this search measures it.
+    fn measured(&self, mut v: Vector3<f64>) -> Vector3<f64> {
+        if let Some(k) = self.held {
+            v[k] *= HELD;
+        }
+        v
+    }
+}
+
+/// How much more a held axis counts: feet then keep to it to a ten thousandth
+/// of what is settled of the distance.
+const HELD: f64 = 1e4;
+
 /// Halvings of a step that leads away from the point.
 const HALVINGS: usize = 4;
 
-/// The foot of `point` near `start` after at most `steps` steps; never farther
-/// from the point than the start was.
+/// The foot of `point` near `start`; never farther from the point than the
+/// start was.
 pub(in super::super) fn foot(
     sheet: &Sheet,
     point: &Vector3<f64>,
     start: [f64; 2],
-    steps: usize,
+    effort: Effort,
 ) -> Foot {
     let look = |at: [f64; 2]| {
         let tangents = sheet.tangents(at);
@@ -59,16 +106,17 @@ pub(in super::super) fn foot(
     };
     let domain = sheet.net.domain();
     let mut best = look(sheet.net.clamp(start));
-    for _ in 0..steps {
-        let (mut step, promise) = free_step(&best, domain);
-        if promise <= SETTLED * best.offset.norm_squared() {
+    for _ in 0..effort.steps {
+        let (mut step, promise) = free_step(&best, domain, effort);
+        let before = effort.measured(best.offset).norm_squared();
+        if promise <= effort.settled * before {
             break;
         }
         let mut moved = false;
         for _ in 0..HALVINGS {
             let next = [best.at[0] + step[0], best.at[1] + step[1]];
             let trial = look(sheet.net.clamp(next));
-            if trial.offset.norm_squared() < best.offset.norm_squared() {
+            if effort.measured(trial.offset).norm_squared() < before {
                 best = trial;
                 moved = true;
                 break;
@@ -84,10 +132,10 @@ pub(in super::super) fn foot(
 
 /// The Gauss–Newton step that leaves bounds alone which it would cross, and by
 /// how much it would lower the squared distance from a plane.
-fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> ([f64; 2], f64) {
-    let (du, dv) = (&foot.sheet.du, &foot.sheet.dv);
-    let (e, f, g) = (du.dot(du), du.dot(dv), dv.dot(dv));
-    let slope = [du.dot(&foot.offset), dv.dot(&foot.offset)];
+fn free_step(foot: &Foot, domain: [[f64; 2]; 2], effort: Effort) -> ([f64; 2], f64) {
+    let [du, dv, offset] = [foot.sheet.du, foot.sheet.dv, foot.offset].map(|v| effort.measured(v));
+    let (e, f, g) = (du.dot(&du), du.dot(&dv), dv.dot(&dv));
+    let slope = [du.dot(&offset), dv.dot(&offset)];
     let held = [0, 1].map(|k| {
         (foot.at[k] <= domain[k][0] && slope[k] < 0.0)
             || (foot.at[k] >= domain[k][1] && slope[k] > 0.0)
@@ -107,6 +155,22 @@ fn free_step(foot: &Foot, domain: [[f64; 2]; 2]) -> ([f64; 2], f64) {
     (step, step[0] * slope[0] + step[1] * slope[1])
 }
 
+/// The foot of a point on the tangent plane of a sheet at a place.
+pub(in super::super) fn on_plane(
+    tangents: &Tangents,
+    at: [f64; 2],
+    point: &Vector3<f64>,
+) -> [f64; 2] {
+    let foot = Foot {
+        at,
+        sheet: *tangents,
+        offset: point - tangents.point,
+    };
+    let everywhere = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+    let (step, _) = free_step(&foot, everywhere, Effort::exact(1));
+    [at[0] + step[0], at[1] + step[1]]
+}
+
 /// Points between two looks at the control: well below a tenth of a second.
 const BLOCK: usize = 65_536;
 
@@ -117,7 +181,7 @@ const BLOCK: usize = 65_536;
 pub(in super::super) fn feet(
     sheet: &Sheet,
     (points, starts): (&[Vector3<f64>], &[[f64; 2]]),
-    steps: usize,
+    effort: Effort,
     control: &dyn Control,
 ) -> Result<Vec<Foot>, Stop> {
     let mut all = Vec::with_capacity(points.len());
@@ -128,7 +192,7 @@ pub(in super::super) fn feet(
                 .par_iter()
                 .zip(starts)
                 .with_min_len(512)
-                .map(|(p, at)| foot(sheet, p, *at, steps)),
+                .map(|(p, at)| foot(sheet, p, *at, effort)),
         );
     }
     Ok(all)

@@ -42,7 +42,7 @@ pub(in super::super) fn parameters(task: &Task, degree: usize) -> Result<GridPar
     let lines = mean_steps(task)?.map(|s| cumulative(&s));
     let wanted = task.control_points;
     let knots = |k: usize| {
-        line_knots(&lines[k], degree, wanted.map(|w| w[k]))
+        line_knots(&lines[k], degree, (wanted.map(|w| w[k]), &task.knuckles[k]))
             .map_err(|e| FitError::Numerical(e.to_string()))
     };
     let net = Net::new([knots(0)?, knots(1)?]);
@@ -118,27 +118,46 @@ fn cumulative(steps: &[f64]) -> Vec<f64> {
 }
 
 /// Knots at the inner lines (thinned beyond [`MOST_SPANS`]) on the domain
-/// with its margins, or `count − degree` equal spans.
+/// with its margins, or `count − degree` equal spans; at knuckles as many as
+/// leave the sheet only its continuity.
 fn line_knots(
     lines: &[f64],
     degree: usize,
-    count: Option<usize>,
+    (count, knuckles): (Option<usize>, &[usize]),
 ) -> Result<Knots, crate::geometry::SplineError> {
     let last = lines.len() - 1;
     let domain = [
         lines[0] - PAST * (lines[1] - lines[0]),
         lines[last] + PAST * (lines[last] - lines[last - 1]),
     ];
-    if let Some(count) = count {
-        return Knots::uniform(degree, domain, count.saturating_sub(degree).max(1));
+    let mut inner: Vec<f64> = match count {
+        Some(count) => {
+            let knots = Knots::uniform(degree, domain, count.saturating_sub(degree).max(1))?;
+            let breaks = knots.breakpoints();
+            breaks[1..breaks.len() - 1].to_vec()
+        }
+        None => thinned(lines, last.min(MOST_SPANS)),
+    };
+    for k in knuckles {
+        let step = (lines[k + 1] - lines[*k]).min(lines[*k] - lines[k - 1]);
+        inner.retain(|u| (u - lines[*k]).abs() > NEAR_KNUCKLE * step);
+        inner.extend(std::iter::repeat_n(lines[*k], degree));
     }
-    let spans = last.min(MOST_SPANS);
-    let inner: Vec<f64> = (1..spans)
-        .map(|k| {
-            let place = k as f64 * last as f64 / spans as f64;
-            let (i, t) = (place.floor() as usize, place.fract());
-            lines[i] + t * (lines[(i + 1).min(last)] - lines[i])
-        })
-        .collect();
+    inner.sort_by(f64::total_cmp);
     Knots::clamped(degree, domain, &inner)
+}
+
+/// A knot nearer to a knuckle than this share of a step would only make a
+/// sliver of a span.
+const NEAR_KNUCKLE: f64 = 0.5;
+
+/// Inner knots of so many spans, at the lines where there is one a line.
+fn thinned(lines: &[f64], spans: usize) -> Vec<f64> {
+    let last = lines.len() - 1;
+    let knot = |k: usize| {
+        let place = k as f64 * last as f64 / spans as f64;
+        let (i, t) = (place.floor() as usize, place.fract());
+        lines[i] + t * (lines[(i + 1).min(last)] - lines[i])
+    };
+    (1..spans).map(knot).collect()
 }

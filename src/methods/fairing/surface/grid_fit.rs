@@ -22,13 +22,20 @@ const ROWS_OF_ORDER: [(usize, usize); 2] = [(8, 4), (5, 3)];
 /// balance of traces.
 const INTERPOLATION: f64 = 1e-9;
 
-/// Order of the isotropic energy for a table of this size.
-pub(in super::super) fn order(size: [usize; 2]) -> usize {
+/// Order of the isotropic energy for a table of this size; between knuckles
+/// there must be as many lines as the order, to determine what it leaves free.
+pub(in super::super) fn order(size: [usize; 2], knuckles: &[Vec<usize>; 2]) -> usize {
     let shorter = size[0].min(size[1]);
-    ROWS_OF_ORDER
+    let order = ROWS_OF_ORDER
         .iter()
         .find(|(rows, _)| shorter >= *rows)
-        .map_or(2, |(_, order)| *order)
+        .map_or(2, |(_, order)| *order);
+    let fewest = |k: usize| {
+        let ends = [&[0][..], &knuckles[k], &[size[k].saturating_sub(1)]].concat();
+        let runs = ends.windows(2).map(|w| w[1] - w[0] + 1);
+        runs.min().unwrap_or(order)
+    };
+    order.min(fewest(0)).min(fewest(1)).max(2)
 }
 
 /// Fits a grid.
@@ -39,7 +46,7 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
     let Layout::Grid { size, .. } = &task.layout else {
         return Err(FitError::Numerical("no grid".into()));
     };
-    let order = order(*size);
+    let order = order(*size, &task.knuckles);
     let grid = parameters(task, DEGREE)?;
     let net = &grid.net;
     let free = task.freedom.iter().filter(|f| **f).count();
@@ -85,7 +92,7 @@ pub(in super::super) fn stretched<const D: usize>(
     let with = |stretch: f64| {
         let energy = energy(task.energy, (order, stretch), net.domain());
         let model = Likelihood {
-            free: energy.free_dimension(net.degree()),
+            free: energy.free_dimension(net),
             components,
         };
         (energy.matrix(net), model)

@@ -108,6 +108,12 @@ fn task(
         freedom: o.freedom,
         energy: o.energy,
         control_points: o.control_points,
+        knuckles: o.knuckles.clone().map(|mut lines| {
+            lines.sort_unstable();
+            lines.dedup();
+            lines
+        }),
+        cut: o.cut.map(|p| frame.to_unit(&p)),
         robust: o.robust,
         light: o.light.normalize(),
         warnings: Vec::new(),
@@ -230,6 +236,7 @@ fn options(request: &Request, issues: &mut Vec<Issue>) {
         }
     }
     freedom(request, issues);
+    knuckles(request, issues);
     shape(o, issues);
     if !(o.light.iter().all(|x| x.is_finite()) && o.light.norm() > 0.0) {
         let message = "the direction of the light has no length";
@@ -317,15 +324,46 @@ fn positive_list((field, what): (&str, &str), list: &[f64], count: usize, issues
     }
 }
 
-fn freedom(request: &Request, issues: &mut Vec<Issue>) {
-    let free = request.options.freedom.iter().filter(|f| **f).count();
-    let scattered = matches!(request.points, Points::Scattered(_));
-    let message = match free {
-        0 => "no axis is free: points could not move at all",
-        2 if scattered => "scattered points move along one axis or along all three",
-        _ => return,
+/// Knuckles go with grids, and lie between the first and the last line.
+fn knuckles(request: &Request, issues: &mut Vec<Issue>) {
+    let size = match &request.points {
+        Points::Grid(rows) => [rows.len(), rows.first().map_or(0, Vec::len)],
+        Points::Scattered(_) => [0, 0],
     };
-    issues.push(issue(&["options", "freedom"], "bad-freedom", message, None));
+    let words = ["row", "column"];
+    for (k, lines) in request.options.knuckles.iter().enumerate() {
+        for (i, line) in lines.iter().enumerate() {
+            if *line == 0 || line + 1 >= size[k] {
+                let word = words[k];
+                let message = match &request.points {
+                    Points::Scattered(_) => "scattered points have no lines to be knuckles".into(),
+                    Points::Grid(_) => format!("{word} {line} is not an inner one of {}", size[k]),
+                };
+                let path = ["options", KNUCKLES[k], &i.to_string()];
+                issues.push(issue(&path, "no-such-line", message, None));
+            }
+        }
+    }
+}
+
+/// What the lists of knuckles are called where they are given.
+const KNUCKLES: [&str; 2] = ["knuckle_rows", "knuckle_columns"];
+
+fn freedom(request: &Request, issues: &mut Vec<Issue>) {
+    if request.options.freedom == [false; 3] {
+        let message = "no axis is free: points could not move at all";
+        issues.push(issue(&["options", "freedom"], "bad-freedom", message, None));
+    }
+    if let Some(place) = &request.options.cut {
+        let path = ["options", "cut"];
+        if !finite(place) {
+            issues.push(not_finite(&path, place));
+        }
+        if matches!(request.points, Points::Grid(_)) {
+            let message = "a grid is not cut: its rows and columns say where it ends";
+            issues.push(issue(&path, "unexpected", message, None));
+        }
+    }
 }
 
 /// The frame of the points; `None` if they have no extent.

@@ -29,7 +29,7 @@ pub mod outcome;
 mod paper;
 mod programme;
 pub(super) mod region;
-mod report;
+pub(super) mod report;
 pub mod request;
 mod scatter;
 mod slips;

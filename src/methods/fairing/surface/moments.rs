@@ -18,27 +18,25 @@ pub(super) fn by_moments<const D: usize, const N: usize, const K: usize, const T
     let mut moments = [[0.0; K]; K];
     let mut values = [[[0.0; D]; N]; N];
     let (mut cell, mut square, mut counted) = ([0; 2], 0.0, 0);
-    for &i in points {
-        let i = i as usize;
-        let (w, q) = (springs.weight[i], &springs.value[i]);
-        let [u, v] = springs.at[i];
-        let ((i, s), (j, t)) = (net.spans[0].local(u), net.spans[1].local(v));
-        cell = [i, j];
-        let (ps, pt) = (powers::<K>(w, s), powers::<K>(1.0, t));
-        for (row, a) in moments.iter_mut().zip(ps) {
-            for (slot, b) in row.iter_mut().zip(pt) {
-                *slot += a * b;
-            }
+    for group in points.chunks(GROUP) {
+        // What a last, smaller group lacks has no weight.
+        let (mut ps, mut pt) = ([[0.0; K]; GROUP], [[0.0; K]; GROUP]);
+        let mut q = [[0.0; D]; GROUP];
+        for (k, &i) in group.iter().enumerate() {
+            let i = i as usize;
+            let w = springs.weight[i];
+            q[k] = springs.value[i];
+            let [u, v] = springs.at[i];
+            let ((i, s), (j, t)) = (net.spans[0].local(u), net.spans[1].local(v));
+            cell = [i, j];
+            (ps[k], pt[k]) = (powers::<K>(w, s), powers::<K>(1.0, t));
+            square += w * q[k].iter().map(|x| x * x).sum::<f64>();
+            counted += usize::from(w > 0.0);
         }
-        for (row, a) in values.iter_mut().zip(ps) {
-            for (slots, b) in row.iter_mut().zip(pt) {
-                for (slot, q) in slots.iter_mut().zip(q) {
-                    *slot += a * b * q;
-                }
-            }
+        add_moments(&ps, &pt, &mut moments);
+        for d in 0..D {
+            add_values(&ps, &pt, (&q, d), &mut values);
         }
-        square += w * q.iter().map(|x| x * x).sum::<f64>();
-        counted += usize::from(w > 0.0);
     }
     let [(first_u, cu), (first_v, cv)] = [0, 1].map(|k| net.spans[k].polynomials(cell[k]));
     Block {
@@ -47,6 +45,40 @@ pub(super) fn by_moments<const D: usize, const N: usize, const K: usize, const T
         rhs: right_side::<D, N>(&values, (cu, cv)),
         square,
         points: counted,
+    }
+}
+
+/// Points whose products are added at once: one load and one store of a sum
+/// for all of them.
+const GROUP: usize = 4;
+
+#[inline]
+fn add_moments<const K: usize>(
+    [a, b, c, d]: &[[f64; K]; GROUP],
+    [e, f, g, h]: &[[f64; K]; GROUP],
+    moments: &mut [[f64; K]; K],
+) {
+    for (i, row) in moments.iter_mut().enumerate() {
+        let (a, b, c, d) = (a[i], b[i], c[i], d[i]);
+        for (j, slot) in row.iter_mut().enumerate() {
+            *slot += (a * e[j] + b * f[j]) + (c * g[j] + d * h[j]);
+        }
+    }
+}
+
+#[inline]
+fn add_values<const D: usize, const N: usize, const K: usize>(
+    [a, b, c, d]: &[[f64; K]; GROUP],
+    [e, f, g, h]: &[[f64; K]; GROUP],
+    (q, field): (&[[f64; D]; GROUP], usize),
+    values: &mut [[[f64; D]; N]; N],
+) {
+    let [qa, qb, qc, qd] = q.map(|q| q[field]);
+    for (i, row) in values.iter_mut().enumerate() {
+        let (a, b, c, d) = (a[i] * qa, b[i] * qb, c[i] * qc, d[i] * qd);
+        for (j, slot) in row.iter_mut().enumerate() {
+            slot[field] += (a * e[j] + b * f[j]) + (c * g[j] + d * h[j]);
+        }
     }
 }
 

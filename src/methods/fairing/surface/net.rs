@@ -46,6 +46,17 @@ impl Net {
         self.knots[0].degree()
     }
 
+    /// Lines in u and in v across which sheets of this net may have a knuckle.
+    pub(in super::super) fn knuckles(&self) -> [usize; 2] {
+        [0, 1].map(|k| {
+            let [low, high] = self.knots[k].domain();
+            let inner = |(u, times): &(f64, usize)| {
+                *u > low && *u < high && *times >= self.knots[k].degree()
+            };
+            self.knots[k].distinct().iter().filter(|d| inner(d)).count()
+        })
+    }
+
     /// The number of control point (i, j): the shorter direction runs
     /// fastest, so that the band is as narrow as it can be.
     pub(in super::super) fn index(&self, i: usize, j: usize) -> usize {
@@ -81,6 +92,9 @@ impl Net {
 pub(in super::super) struct Sheet {
     pub(in super::super) net: Net,
     pub(in super::super) control: Vec<Vector3<f64>>,
+    /// Whether x and y are the parameters themselves, so that only heights
+    /// need be summed.
+    pub(in super::super) plane: bool,
 }
 
 /// Place and first derivatives on a sheet.
@@ -143,6 +157,7 @@ impl Sheet {
         Sheet {
             net: net.clone(),
             control,
+            plane: true,
         }
     }
 
@@ -151,36 +166,64 @@ impl Sheet {
         Sheet {
             net: net.clone(),
             control: control.iter().map(|c| Vector3::from(*c)).collect(),
+            plane: false,
         }
     }
 
-    /// Sums `Σ N_i⁽ᵃ⁾(u) N_j⁽ᵇ⁾(v) P_ij` for the wanted pairs (a, b), row by
-    /// row of the direction that runs fastest in memory.
+    /// Sums `Σ N_i⁽ᵃ⁾(u) N_j⁽ᵇ⁾(v) P_ij` for the wanted pairs (a, b).
     #[inline]
     fn sums<const R: usize, const S: usize>(
         &self,
         at: [f64; 2],
         orders: [[usize; 2]; S],
     ) -> [Vector3<f64>; S] {
+        if !self.plane {
+            return self.coordinates::<3, R, S>(at, orders).map(Vector3::from);
+        }
+        let [u, v] = self.net.clamp(at);
+        let heights = self.coordinates::<1, R, S>(at, orders);
+        let mut sums = [Vector3::zeros(); S];
+        for ((sum, [z]), order) in sums.iter_mut().zip(heights).zip(orders) {
+            *sum = match order {
+                [0, 0] => Vector3::new(u, v, z),
+                [1, 0] => Vector3::new(1.0, 0.0, z),
+                [0, 1] => Vector3::new(0.0, 1.0, z),
+                _ => Vector3::new(0.0, 0.0, z),
+            };
+        }
+        sums
+    }
+
+    /// The last `D` coordinates of [`Self::sums`], row by row of the direction
+    /// that runs fastest in memory.
+    #[inline]
+    fn coordinates<const D: usize, const R: usize, const S: usize>(
+        &self,
+        at: [f64; 2],
+        orders: [[usize; 2]; S],
+    ) -> [[f64; D]; S] {
         let jets = self.net.jets::<R>(at);
         let [nu, nv] = self.net.counts();
         let fast = usize::from(nv <= nu);
         let (slow_jet, fast_jet) = (&jets[1 - fast], &jets[fast]);
         let width = [nu, nv][fast];
-        let mut sums = [Vector3::zeros(); S];
+        let mut sums = [[0.0; D]; S];
         for a in 0..slow_jet.count {
             let start = (slow_jet.first + a) * width + fast_jet.first;
             let points = &self.control[start..start + fast_jet.count];
-            let mut rows = [Vector3::zeros(); R];
+            let mut rows = [[0.0; D]; R];
             for (order, row) in rows.iter_mut().enumerate() {
                 for (p, n) in points.iter().zip(fast_jet.derivative(order)) {
-                    row.x += p.x * n;
-                    row.y += p.y * n;
-                    row.z += p.z * n;
+                    for (d, sum) in row.iter_mut().enumerate() {
+                        *sum += p[3 - D + d] * n;
+                    }
                 }
             }
             for (sum, order) in sums.iter_mut().zip(orders) {
-                *sum += rows[order[fast]] * slow_jet.derivative(order[1 - fast])[a];
+                let weight = slow_jet.derivative(order[1 - fast])[a];
+                for (s, r) in sum.iter_mut().zip(rows[order[fast]]) {
+                    *s += r * weight;
+                }
             }
         }
         sums
@@ -236,6 +279,7 @@ mod tests {
             let sheet = Sheet {
                 control: (0..net.len()).map(place).collect(),
                 net,
+                plane: false,
             };
             let h = 1e-6;
             for at in [[0.11, 0.87], [0.52, 0.31], [0.93, 0.05]] {

@@ -4,7 +4,7 @@
 //! lowered while it is far below; feet anew each time. The first shape comes
 //! from the border alone, as in STEP1, where the layout has one.
 
-use super::feet::{Foot, feet};
+use super::feet::{Effort, Foot, feet};
 use super::fit::{Fit, energy, places, springs_to};
 use super::net::{Net, Sheet};
 use super::request::EnergyWeights;
@@ -34,7 +34,7 @@ const FAR_BELOW: f64 = 0.8;
 /// Most changes of K: sixty octaves span all stiffnesses that numbers have.
 const CHANGES: usize = 60;
 /// Feet steps a change.
-const FOOT_STEPS: usize = 4;
+const FEET: Effort = Effort::exact(4);
 
 /// A sheet of the loop.
 struct Trial {
@@ -70,7 +70,7 @@ pub(super) fn fit(
         task,
         energy: term.matrix(&net),
         model: Likelihood {
-            free: term.free_dimension(DEGREE),
+            free: term.free_dimension(&net),
             components: 3.0,
         },
         tolerance: task.tolerance.clone().unwrap_or_default(),
@@ -78,12 +78,7 @@ pub(super) fn fit(
     };
     let first = springs.first_shape(start.lambda);
     let at = match first {
-        Some(sheet) => places(&feet(
-            &sheet,
-            (&task.points, &start.at),
-            FOOT_STEPS,
-            control,
-        )?),
+        Some(sheet) => places(&feet(&sheet, (&task.points, &start.at), FEET, control)?),
         None => start.at.clone(),
     };
     let best = springs
@@ -136,7 +131,7 @@ impl Springs<'_> {
                 break;
             };
             let sheet = Sheet::of_points(&self.net, &chosen.control);
-            let now = feet(&sheet, (points, &at), FOOT_STEPS, control)?;
+            let now = feet(&sheet, (points, &at), FEET, control)?;
             let worst = self.worst(&now);
             at = places(&now);
             let better = best.as_ref().is_none_or(|b| {

@@ -194,6 +194,7 @@ fn join(whole: &Strips, moves: &[f64], members: &mut [bool]) -> usize {
 /// The sheet after the moves of its control points.
 fn moved(sheet: &Sheet, directions: &[Vector3<f64>], moves: &[f64]) -> Sheet {
     let mut moved = sheet.clone();
+    moved.plane = false;
     for (p, (n, c)) in moved.control.iter_mut().zip(directions.iter().zip(moves)) {
         *p += n * *c;
     }

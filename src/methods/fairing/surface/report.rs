@@ -1,7 +1,7 @@
 //! From a fit to the outcome: moves, figures, tables, sentences.
 
 use super::diagnose::diagnose;
-use super::feet::Foot;
+use super::feet::{Effort, Foot, feet};
 use super::fit::Fit;
 use super::net::Sheet;
 use super::outcome::{Active, Move, Outcome, Parametrisation, Slip, TradeOff};
@@ -9,7 +9,7 @@ use super::region::Region;
 use super::springs::{Normal, gather};
 use super::stiffness::fit_with;
 use super::task::Task;
-use super::tolerance::{Bounded, energy_of, exact_feet};
+use super::tolerance::{Bounded, energy_of};
 use crate::geometry::BSplineSurface;
 use crate::methods::FitError;
 use crate::solver::Control;
@@ -28,6 +28,8 @@ const TRADE_SAMPLE: usize = 5_000;
 const BEFORE: [f64; 3] = [1e-6, 1e-4, 1e-2];
 /// A point with less of the strongest pull is not holding the sheet.
 const HOLDS: f64 = 1e-6;
+/// Most steps to a foot.
+const FOOT_STEPS: usize = 12;
 /// Longest list of active points.
 const MOST_ACTIVE: usize = 1000;
 
@@ -114,8 +116,14 @@ pub(super) fn feet_of(
     (sheet, at): (&Sheet, &[[f64; 2]]),
     control: &dyn Control,
 ) -> Result<Vec<Foot>, FitError> {
-    if task.slides() {
-        return Ok(exact_feet(sheet, &task.points, at, control)?);
+    if task.slides() || task.held().is_some() {
+        // Against a tolerance every digit counts.
+        let effort = match task.tolerance {
+            Some(_) => Effort::exact(FOOT_STEPS),
+            None => Effort::listed(FOOT_STEPS),
+        }
+        .holding(task.held());
+        return Ok(feet(sheet, (&task.points, at), effort, control)?);
     }
     let stay = |(p, at): (&nalgebra::Vector3<f64>, &[f64; 2])| {
         let tangents = sheet.tangents(*at);
@@ -204,13 +212,18 @@ fn active(task: &Task, bounded: &Bounded) -> Vec<Active> {
     active
 }
 
-fn summary(o: &Outcome, bounded: Option<&Bounded>) -> Vec<String> {
-    let moved = format!(
+/// How much was moved, in words: how the verdict begins.
+pub(in super::super) fn moved(o: &Outcome) -> String {
+    format!(
         "{} points, moved by at most {:.6} (rms {:.6})",
         o.moves.len(),
         o.move_max,
         o.move_rms
-    );
+    )
+}
+
+fn summary(o: &Outcome, bounded: Option<&Bounded>) -> Vec<String> {
+    let moved = moved(o);
     let verdict = match bounded {
         None => format!(
             "{moved}; stiffness from the points' own noise, estimated as σ = {:.6}.",

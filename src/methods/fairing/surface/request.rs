@@ -68,17 +68,24 @@ pub struct Options {
     pub stiffness: Option<Vec<f64>>,
     /// Indices of points through which the surface passes.
     pub locked: Vec<usize>,
-    /// Axes (x, y, z) along which points may move. Scattered points: all
-    /// three, or exactly one, of which the sheet is then a field.
+    /// Axes (x, y, z) along which points may move, at least one. Scattered
+    /// points with one free axis are a field along that axis.
     pub freedom: [bool; 3],
-    /// The energy; `None`: the isotropic one that weighs the change of
-    /// curvature (order 3 or 4, chosen from the grid).
+    /// The energy; `None`: the one that weighs the change of curvature (order
+    /// 3 or 4, its stretch along v chosen from the data). Of a folded sheet it
+    /// is that of the height across its coarse base.
     pub energy: Option<EnergyWeights>,
     /// Springs of points on a grid's border are stiffer by this factor (1 by
     /// default, 100 by default for [`Solver::Paper`]); > 0.
     pub boundary_factor: Option<f64>,
     /// Number of control points in u and v; `None`: chosen from the data.
     pub control_points: Option<[usize; 2]>,
+    /// Rows and columns of a grid (not the first or last) across which the
+    /// sheet may have a knuckle.
+    pub knuckles: [Vec<usize>; 2],
+    /// A place near which a sheet of scattered points that closes all round (a
+    /// tube) is cut along its axis; without it such a sheet is refused.
+    pub cut: Option<Point3<f64>>,
     /// Gross errors lose their pull instead of bending the surface.
     pub robust: bool,
     /// Which algorithm.
@@ -97,6 +104,8 @@ impl Default for Options {
             energy: None,
             boundary_factor: None,
             control_points: None,
+            knuckles: [Vec::new(), Vec::new()],
+            cut: None,
             robust: false,
             solver: Solver::Own,
             light: Vector3::new(0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2),

@@ -10,10 +10,11 @@ use super::feet::Foot;
 use super::fit::{Fit, free_only, median_scale, robust, springs_to};
 use super::net::{Sheet, Tangents};
 use super::outcome::Slip;
-use super::springs::{Normal, gather};
-use super::stiffness::{Factor, fit_with};
+use super::springs::{Springs, gather};
+use super::stiffness::{Factor, blend};
 use super::task::{Layout, Task};
 use crate::methods::FitError;
+use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -124,13 +125,13 @@ fn judge<'a>(
         feet.map(|f| across(&f.sheet, &f.offset, task.freedom))
             .collect()
     };
-    let normal = gather(net, &springs);
-    let Some(solved) = fit_with(&normal, &fit.energy, lambda, fit.model) else {
+    let matrix = gather(net, &weights_of(&springs)).matrix;
+    let Some(factor) = Factor::new(&blend(&matrix, lambda, &fit.energy)) else {
         return Ok(None);
     };
     control.check()?;
     let lengths: Vec<f64> = residual.iter().map(|r| r.0.abs()).collect();
-    let used = used(&normal, fit, (lambda, &solved.factor)) / lengths.len() as f64;
+    let used = used(&matrix, fit, (lambda, &factor)) / lengths.len() as f64;
     let sigma = (scale(&lengths) / (1.0 - used.clamp(0.0, MOST_USED)).sqrt()).max(ROUNDING);
     Ok(Some(Judge {
         task,
@@ -139,7 +140,7 @@ fn judge<'a>(
         weight,
         residual,
         sigma,
-        factor: solved.factor,
+        factor,
     }))
 }
 
@@ -157,13 +158,21 @@ impl Judge<'_> {
 
 /// Degrees of freedom that a fit uses up, which its residuals lack:
 /// `N − d ln det(A + λP)/d ln λ`, by a difference.
-fn used(normal: &Normal<3>, fit: &Fit, (lambda, factor): (f64, &Factor)) -> f64 {
-    let order = normal.rhs.len() as f64;
-    let beside = fit_with(normal, &fit.energy, lambda * DIFFERENCE, fit.model);
+fn used(matrix: &EnvelopeMatrix, fit: &Fit, (lambda, factor): (f64, &Factor)) -> f64 {
+    let beside = Factor::new(&blend(matrix, lambda * DIFFERENCE, &fit.energy));
     beside.map_or(0.0, |b| {
-        let rise = b.factor.log_determinant() - factor.log_determinant();
-        order - rise / DIFFERENCE.ln()
+        let rise = b.log_determinant() - factor.log_determinant();
+        matrix.order() as f64 - rise / DIFFERENCE.ln()
     })
+}
+
+/// Places and stiffness alone: all that leverages depend on.
+fn weights_of(springs: &Springs<3>) -> Springs<0> {
+    Springs {
+        at: springs.at.clone(),
+        value: vec![[]; springs.at.len()],
+        weight: springs.weight.clone(),
+    }
 }
 
 /// Factor between the two λ of the difference.

@@ -38,8 +38,6 @@ pub(in super::super) struct Chosen<const D: usize> {
     /// The criterion, smaller is better (only for comparison on the same data
     /// and energy).
     pub(in super::super) criterion: f64,
-    /// The factor of A + λP.
-    pub(in super::super) factor: Factor,
 }
 
 /// Decades below and above the balance of the traces that are searched.
@@ -147,7 +145,6 @@ pub(in super::super) fn fit_with<const D: usize>(
         control,
         noise: (left / (degrees * model.components)).sqrt(),
         criterion,
-        factor,
     })
 }
 

@@ -64,6 +64,10 @@ pub(in super::super) struct Task {
     pub(in super::super) freedom: [bool; 3],
     pub(in super::super) energy: Option<EnergyWeights>,
     pub(in super::super) control_points: Option<[usize; 2]>,
+    /// Rows and columns with a knuckle, increasing.
+    pub(in super::super) knuckles: [Vec<usize>; 2],
+    /// Where a tube may be cut, in the frame.
+    pub(in super::super) cut: Option<Vector3<f64>>,
     pub(in super::super) robust: bool,
     /// Unit vector to the light, user's axes.
     pub(in super::super) light: Vector3<f64>,
@@ -78,5 +82,13 @@ impl Task {
     /// Whether all three axes are free.
     pub(in super::super) fn slides(&self) -> bool {
         self.freedom == [true; 3]
+    }
+
+    /// The one axis that is held by scattered points with two free ones: they
+    /// slide within their planes across it.
+    pub(in super::super) fn held(&self) -> Option<usize> {
+        let held = self.freedom.iter().position(|f| !f)?;
+        let two = self.freedom.iter().filter(|f| **f).count() == 2;
+        (two && self.layout == Layout::Scattered).then_some(held)
     }
 }

@@ -8,7 +8,7 @@
 //! the sheet between foot and point is curved, it is narrowed by what it was
 //! exceeded.
 
-use super::feet::{Foot, feet};
+use super::feet::{Effort, Foot, feet};
 use super::net::Sheet;
 use super::programme::Programme;
 use crate::methods::FitError;
@@ -51,7 +51,7 @@ const SETTLED: f64 = 1e-3;
 /// whoever checks.
 const ROOM: f64 = 1e-6;
 /// Gauss–Newton steps for feet: they must be the true ones here.
-const FOOT_STEPS: usize = 12;
+const FEET: Effort = Effort::exact(12);
 
 /// The fairest sheet within bounds, from a sheet nearby. When the bounds
 /// cannot all be met with this net the result says by how much (`worst`
@@ -120,7 +120,7 @@ fn ratios(
         let one = |i: usize| (bounds.points[i] - sheet.point(at[i])).norm() / bounds.tolerance[i];
         return Ok((0..at.len()).map(one).collect());
     }
-    let feet = feet(sheet, (bounds.points, at), FOOT_STEPS, control)?;
+    let feet = feet(sheet, (bounds.points, at), FEET, control)?;
     for (place, foot) in at.iter_mut().zip(&feet) {
         *place = foot.at;
     }
@@ -178,5 +178,5 @@ pub(in super::super) fn exact_feet(
     at: &[[f64; 2]],
     control: &dyn Control,
 ) -> Result<Vec<Foot>, Stop> {
-    feet(sheet, (points, at), FOOT_STEPS, control)
+    feet(sheet, (points, at), FEET, control)
 }

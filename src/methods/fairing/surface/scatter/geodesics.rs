@@ -6,6 +6,7 @@
 //! multidimensional scaling (de Silva & Tenenbaum 2004) makes the map: exact
 //! for developable sheets but for the paths' own error, and smooth for all.
 
+use super::rigid::relaxed;
 use super::voxels::Nodes;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -32,7 +33,7 @@ pub(super) fn flat_map(nodes: &Nodes) -> Option<Vec<[f64; 2]>> {
     let links = links(nodes);
     let (landmarks, paths) = landmarks(&links);
     let map = scale(&landmarks, &paths)?;
-    (folded(nodes, &map, &paths) <= FOLDED).then(|| turned(map))
+    (folded(nodes, &map, &paths) <= FOLDED).then(|| turned(relaxed(nodes, map)))
 }
 
 /// Neighbours and their neighbours; pieces that do not touch are linked by

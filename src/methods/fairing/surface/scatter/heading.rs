@@ -18,15 +18,16 @@ const AXIS_BONUS: f64 = 0.5;
 /// The direction (user's axes) along which the sheet is a height field;
 /// `None` where there is none.
 pub(in super::super) fn heading(task: &Task, nodes: &Nodes) -> Option<Vector3<f64>> {
-    if !task.slides() {
+    if task.freedom.iter().filter(|f| **f).count() == 1 {
         let axis = Vector3::from_fn(|k, _| if task.freedom[k] { 1.0 } else { 0.0 });
         return Some(axis);
     }
     if nodes.place.len() < FEWEST_NODES {
         let flat = least_direction(moments(&task.points));
-        let k = flat.iamax();
+        let k = free_part(&flat, task).iamax();
         let axis = Vector3::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
-        return Some(if flat[k].abs() > 0.9 { axis } else { flat });
+        let is_axis = flat[k].abs() > 0.9 || !task.slides();
+        return Some(if is_axis { axis } else { flat });
     }
     let mean = nodes.normal.iter().sum::<Vector3<f64>>();
     let mean = mean.try_normalize(1e-9)?;
@@ -35,13 +36,18 @@ pub(in super::super) fn heading(task: &Task, nodes: &Nodes) -> Option<Vector3<f6
         cosines.sort_by(f64::total_cmp);
         cosines[((1.0 - SHARE) * cosines.len() as f64) as usize]
     };
-    let k = mean.iamax();
+    let k = free_part(&mean, task).iamax();
     let axis = Vector3::from_fn(|i, _| if i == k { mean[k].signum() } else { 0.0 });
     let (of_mean, of_axis) = (worst(&mean), worst(&axis));
     if of_axis >= STEEPEST && of_axis >= AXIS_BONUS * of_mean {
         return Some(axis.abs());
     }
-    (of_mean >= STEEPEST).then_some(mean)
+    (of_mean >= STEEPEST && task.slides()).then_some(mean)
+}
+
+/// A direction without its parts along held axes.
+fn free_part(v: &Vector3<f64>, task: &Task) -> Vector3<f64> {
+    Vector3::from_fn(|k, _| if task.freedom[k] { v[k] } else { 0.0 })
 }
 
 /// The direction across `up` in which the points are longest: a coordinate

@@ -37,7 +37,8 @@ pub(in super::super) const SPARSE: Space = Space {
 /// Fewer points than this are a handful: fewer than thrice what the energy of
 /// order 4 leaves free.
 const HANDFUL: usize = 30;
-/// A sheet that wants more spans than this is not smooth.
+/// A sheet that wants more spans than this is not smooth. Its detail lies in
+/// all directions, and the net is what limits it: it is no longer stretched.
 const SMOOTH_SPANS: f64 = 40.0;
 
 /// Spans along the longer side of the first level.
@@ -69,6 +70,13 @@ const PAST: f64 = 0.005;
 pub(in super::super) struct Step {
     pub(in super::super) space: Space,
     pub(in super::super) spans: usize,
+    /// How much farther the sheet is alike along u than along v: its energy
+    /// counts derivatives by v less by this factor an order, and its net is
+    /// finer by it along v.
+    pub(in super::super) stretch: f64,
+    /// Fewest spans along u and v: those of a base, so that the sheet raised
+    /// across it can follow it.
+    pub(in super::super) least: [usize; 2],
 }
 
 /// The first level.
@@ -76,19 +84,21 @@ pub(in super::super) fn first(points: usize) -> Step {
     Step {
         space: if points < HANDFUL { SPARSE } else { SMOOTH },
         spans: FIRST,
+        stretch: 1.0,
+        least: [FEWEST_SPANS; 2],
     }
 }
 
 /// The level after `now`, which found λ for springs of the given density
-/// (weight per unit of area) on a sheet whose longer side is `length`; `None`
-/// where `now` is fine enough.
+/// (weight per unit of area) on a sheet of the given sides; `None` where `now`
+/// is fine enough.
 pub(in super::super) fn next(
     now: Step,
     lambda: f64,
-    (density, length): (f64, f64),
+    (density, lengths): (f64, [f64; 2]),
 ) -> Option<Step> {
     let wave = (density / lambda).powf(0.5 / now.space.order as f64);
-    let wanted = SPANS_A_HALF_WAVE * length * wave / std::f64::consts::PI;
+    let wanted = SPANS_A_HALF_WAVE * longer(lengths, now.stretch) * wave / std::f64::consts::PI;
     if wanted <= now.spans as f64 || now.spans >= MOST {
         return None;
     }
@@ -98,7 +108,14 @@ pub(in super::super) fn next(
     Some(Step {
         space: if rough { ROUGH } else { now.space },
         spans: spans.min(MOST),
+        stretch: if rough { 1.0 } else { now.stretch },
+        ..now
     })
+}
+
+/// The longer side where lengths along v count `stretch` times.
+fn longer([a, b]: [f64; 2], stretch: f64) -> f64 {
+    a.max(stretch * b)
 }
 
 /// Mean correlation of the residuals of neighbours in cells half as long as
@@ -138,6 +155,8 @@ pub(in super::super) fn beyond(now: Step, leftover: f64) -> Option<Step> {
     (leftover > MISSED && now.spans < MOST && now.space != SPARSE).then(|| Step {
         space: ROUGH,
         spans: (2 * now.spans).min(MOST),
+        stretch: 1.0,
+        ..now
     })
 }
 
@@ -154,7 +173,7 @@ pub(in super::super) fn domain(at: &[[f64; 2]]) -> [[f64; 2]; 2] {
     domain.map(|[a, b]| [a - PAST * side, b + PAST * side])
 }
 
-/// The net of a level, cells as square as they can be.
+/// The net of a level, cells as square as they can be but for the stretch.
 ///
 /// # Errors
 /// [`FitError::Numerical`] for a domain without extent.
@@ -165,10 +184,11 @@ pub(in super::super) fn net(
 ) -> Result<Net, FitError> {
     let degree = step.space.degree;
     let length = domain.map(|[a, b]| b - a);
-    let longer = length[0].max(length[1]);
+    let longer = longer(length, step.stretch);
+    let scaled = [length[0], step.stretch * length[1]];
     let count = |k: usize| match wanted {
         Some(w) => w[k].saturating_sub(degree).max(1),
-        None => ((step.spans as f64 * length[k] / longer).round() as usize).max(FEWEST_SPANS),
+        None => ((step.spans as f64 * scaled[k] / longer).round() as usize).max(step.least[k]),
     };
     let knots = |k: usize| {
         Knots::uniform(degree, domain[k], count(k)).map_err(|e| FitError::Numerical(e.to_string()))

@@ -1,14 +1,19 @@
 //! Scattered points: parameters without the user's help, then fits from
 //! coarse to fine.
 
+mod base;
 pub(super) mod field;
 mod geodesics;
 pub(super) mod heading;
 pub(super) mod levels;
+mod rigid;
+mod seam;
+mod stretch;
 pub(super) mod unroll;
 pub(super) mod voxels;
 
-use super::fit::Fit;
+use super::feet::{Effort, feet};
+use super::fit::{Fit, places};
 use super::outcome::Parametrisation;
 use super::task::Task;
 use crate::methods::FitError;
@@ -26,18 +31,28 @@ pub(super) fn fit(
 ) -> Result<(Fit, Parametrisation), FitError> {
     control.progress("parameters", 2.0);
     let nodes = voxels::nodes(&task.points);
-    match heading::heading(task, &nodes) {
+    let (mut fit, parametrisation) = match heading::heading(task, &nodes) {
         Some(up) => {
             turn(task, &up);
             let up = task.frame.axes.column(2).into_owned();
-            Ok((field::fit(task, control)?, Parametrisation::HeightField(up)))
+            let fit = field::of_plane(task, control)?;
+            (fit, Parametrisation::HeightField(up))
         }
-        None => Ok((
-            unroll::fit(task, &nodes, control)?,
-            Parametrisation::Unrolled,
-        )),
+        None => {
+            let fit = unroll::fit(task, &nodes, control)?;
+            (fit, Parametrisation::Unrolled)
+        }
+    };
+    if task.held().is_some() {
+        let effort = Effort::exact(FOOT_STEPS).holding(task.held());
+        let seats = (task.points.as_slice(), fit.at.as_slice());
+        fit.at = places(&feet(&fit.sheet, seats, effort, control)?);
     }
+    Ok((fit, parametrisation))
 }
+
+/// Steps to the foot in a point's own plane from its place in the net.
+const FOOT_STEPS: usize = 12;
 
 /// Turns frame and points: third axis `up` (user's axes).
 fn turn(task: &mut Task, up: &nalgebra::Vector3<f64>) {
@@ -48,4 +63,9 @@ fn turn(task: &mut Task, up: &nalgebra::Vector3<f64>) {
         *p = change * *p;
     }
     task.frame = turned;
+    if task.freedom != [true; 3] {
+        // Turned by right angles only: `heading` keeps to the axes then.
+        task.freedom = [0, 1, 2].map(|k| task.freedom[turned.axes.column(k).iamax()]);
+    }
+    task.cut = task.cut.map(|p| change * p);
 }

@@ -24,9 +24,18 @@ pub(in super::super) struct Nodes {
     pub(in super::super) near: Vec<Vec<usize>>,
     /// Unit normals, consistently turned as far as neighbours go.
     pub(in super::super) normal: Vec<Vector3<f64>>,
-    keys: Vec<[i64; 3]>,
+    keys: Vec<Key>,
     side: f64,
 }
+
+/// Three whole numbers in one, compared by the first, then the second, then
+/// the third.
+type Key = u64;
+
+/// Bits of each number, and what makes it positive.
+const BITS: u32 = 21;
+/// See [`BITS`].
+const MIDDLE: i64 = 1 << (BITS - 1);
 
 impl Nodes {
     /// Side of the voxels.
@@ -53,7 +62,7 @@ impl Nodes {
             return Some(i);
         }
         let mut best: Option<(f64, usize)> = None;
-        for j in around(k, 1).filter_map(|k| self.keys.binary_search(&k).ok()) {
+        for j in around(&self.keys, k, 1) {
             let d = (self.place[j] - p).norm_squared();
             if best.is_none_or(|(b, _)| d < b) {
                 best = Some((d, j));
@@ -63,16 +72,26 @@ impl Nodes {
     }
 }
 
-fn key(p: &Vector3<f64>, side: f64) -> [i64; 3] {
-    [0, 1, 2].map(|k| (p[k] / side).floor() as i64)
+fn key(p: &Vector3<f64>, side: f64) -> Key {
+    let part = |k: usize| {
+        let cell = (p[k] / side).floor() as i64;
+        (cell + MIDDLE).clamp(0, 2 * MIDDLE - 1) as Key
+    };
+    (part(0) << (2 * BITS)) | (part(1) << BITS) | part(2)
 }
 
-fn around(k: [i64; 3], reach: i64) -> impl Iterator<Item = [i64; 3]> {
-    let span = -reach..=reach;
+/// Places in the sorted keys of the voxels within `reach` of one.
+fn around(keys: &[Key], k: Key, reach: u64) -> impl Iterator<Item = usize> {
+    let one = |shift: u32| move |n: i64| (n << shift) as Key;
+    let (slow, middle) = (one(2 * BITS), one(BITS));
+    let span = -(reach as i64)..=reach as i64;
     span.clone().flat_map(move |a| {
-        let span = span.clone();
-        span.clone()
-            .flat_map(move |b| span.clone().map(move |c| [k[0] + a, k[1] + b, k[2] + c]))
+        span.clone().flat_map(move |b| {
+            let column = k.wrapping_add(slow(a)).wrapping_add(middle(b));
+            let start = keys.partition_point(|q| *q < column - reach);
+            let within = move |j: &usize| keys[*j] <= column + reach;
+            (start..keys.len()).take_while(within)
+        })
     })
 }
 
@@ -84,7 +103,7 @@ pub(in super::super) fn nodes(points: &[Vector3<f64>]) -> Nodes {
     // A sheet of unit size in voxels of side 1/k fills about k² of them.
     let mut side = 1.0 / wanted.sqrt();
     let occupied = |side: f64| {
-        let mut keys: Vec<[i64; 3]> = sample.iter().map(|p| key(p, side)).collect();
+        let mut keys: Vec<Key> = sample.iter().map(|p| key(p, side)).collect();
         keys.sort_unstable();
         keys.dedup();
         keys
@@ -109,17 +128,8 @@ pub(in super::super) fn nodes(points: &[Vector3<f64>]) -> Nodes {
     for (p, n) in place.iter_mut().zip(&count) {
         *p /= (*n).max(1) as f64;
     }
-    let neighbours = |k: [i64; 3], i: usize| -> Vec<usize> {
-        around(k, 1)
-            .filter_map(|k| keys.binary_search(&k).ok())
-            .filter(|j| *j != i)
-            .collect()
-    };
-    let near = keys
-        .iter()
-        .enumerate()
-        .map(|(i, k)| neighbours(*k, i))
-        .collect();
+    let neighbours = |(i, k): (usize, &Key)| around(&keys, *k, 1).filter(|j| *j != i).collect();
+    let near = keys.iter().enumerate().map(neighbours).collect();
     let mut nodes = Nodes {
         place,
         count,
@@ -135,9 +145,7 @@ pub(in super::super) fn nodes(points: &[Vector3<f64>]) -> Nodes {
 
 /// Normal of the plane through a node and the nodes within two voxels.
 fn normal(nodes: &Nodes, i: usize) -> Vector3<f64> {
-    let all: Vec<usize> = around(nodes.keys[i], 2)
-        .filter_map(|k| nodes.keys.binary_search(&k).ok())
-        .collect();
+    let all: Vec<usize> = around(&nodes.keys, nodes.keys[i], 2).collect();
     let weight: f64 = all.iter().map(|j| nodes.count[*j] as f64).sum();
     let mean = all
         .iter()

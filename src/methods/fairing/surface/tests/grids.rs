@@ -171,3 +171,41 @@ fn threads_do_not_matter() {
     };
     assert_eq!(run(1), run(3));
 }
+
+/// A chine along a row and a knuckle along a column.
+fn chined(u: f64, v: f64) -> Point3<f64> {
+    let p = bowl(u, v);
+    let corner = 2.0 * (u - 0.5).max(0.0) - 1.5 * (0.25 - v).max(0.0);
+    p + Vector3::z() * corner
+}
+
+#[test]
+fn knuckles_stay_where_they_are_told() {
+    let sigma = 0.01;
+    // Rows and columns 12 and 6 lie on the corners.
+    let rows = grid(chined, [25, 25], (sigma, &mut Noise::new(31)));
+    let smooth = done(&request(Points::Grid(rows.clone())));
+    let mut asked = request(Points::Grid(rows));
+    asked.options.knuckles = [vec![12], vec![6]];
+    let kept = done(&asked);
+    assert!((kept.noise / sigma - 1.0).abs() < 0.15, "{}", kept.noise);
+    let [with, without] = [&kept, &smooth].map(|o| from_truth(&o.surface, chined));
+    assert!(
+        with < 0.5 * sigma && with < 0.6 * without,
+        "{with} {without}"
+    );
+    // The corner is a corner: 2/10 of slope from one side to the other.
+    let knots = &kept.surface.knots()[0];
+    let corner = knots[6..knots.len() - 6].windows(5).find(|w| w[0] == w[4]);
+    let (u, v) = (corner.expect("a knot of five")[0], kept.moves[15].at[1]);
+    let slope = |h: f64| {
+        let [a, b] = [0.0, h].map(|h| kept.surface.point(u + h, v));
+        (b.z - a.z) / (b.x - a.x)
+    };
+    let change = slope(1e-4) - slope(-1e-4);
+    assert!((change - 0.2).abs() < 0.03, "{change}");
+    asked.options.knuckles = [vec![0], vec![24]];
+    let issues = super::super::validate(&asked);
+    assert_eq!(issues[0].path.join("/"), "options/knuckle_rows/0");
+    assert_eq!(issues[1].path.join("/"), "options/knuckle_columns/0");
+}
