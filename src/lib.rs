@@ -6,7 +6,8 @@
 //! flat steel come out, with the figures that prove it. Or measured offsets go
 //! in, and fair lines and surfaces come out, with the table of corrections. Or a
 //! coarse net of quads goes in, and a skin of cyclide patches comes out, with
-//! the flat patterns of its strips and supports.
+//! the flat patterns of its strips and supports. Or a strip goes in, and the
+//! cones, cylinders and planes to roll it from come out.
 //!
 //! ```text
 //!             app ─────────────► everything
@@ -37,8 +38,8 @@
 //!
 //! ## Reading order
 //!
-//! [`methods::hull_plates`], [`methods::fairing`] and
-//! [`methods::curvature_net`] for what is computed and why, [`solver`] for how
+//! [`methods::hull_plates`], [`methods::fairing`], [`methods::curvature_net`]
+//! and [`methods::cone_spline`] for what is computed and why, [`solver`] for how
 //! it is minimised, [`geometry`] for the splines beneath; [`jobs`] for the
 //! durable queue and [`http`] for the contract with the world.
 

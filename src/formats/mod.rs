@@ -11,6 +11,7 @@
 //! | [`svg`] | the lines plan with the rulings coloured by twist | print, README, browser |
 //! | [`fair_curve`] | corrections of a faired curve (CSV), its plot (SVG) | loftsmen, print |
 //! | [`fair_surface`] | a trimmed mesh (OBJ), corrections (CSV), isophotes (SVG) | CAD, loftsmen, print |
+//! | [`cones`] | a strip of cones (OBJ), its workshop sheets (CSV) | CAD, yards |
 //! | [`cyclides`] | a net of patches (OBJ), the bill of its arcs (CSV) | CAD, yards |
 //! | [`step`] | surfaces sewn along shared edges, curves beside them | CAD |
 //! | [`iges`] | surfaces and curves | older CAD |
@@ -22,6 +23,7 @@
 //! guess nothing that changes a number.
 
 pub mod brep;
+pub mod cones;
 pub mod csv;
 pub mod cyclides;
 pub mod dxf;

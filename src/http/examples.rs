@@ -57,6 +57,12 @@ examples! {
                                     faired as one surface.";
     "bilge_grid", "fairing": "A measured grid of a side with two cells missing, faired within \
                               15 mm.";
+    "shoulder", "cone_spline": "A shoulder strake of 6 m as a mesh: the fewest cones within 4 mm, with \
+                                workshop sheets and the flat pattern.";
+    "strake", "cone_spline": "A strake like that of the UBC trawler between its chines, as a ruled surface: \
+                              cones within 0.05 ft.";
+    "bent_plate", "cone_spline": "A plate with a quarter round, in mm: a plane, a cylinder and a \
+                                  plane, found exactly.";
     "vault", "curvature_net": "A glass vault from 16 quads in any order: cyclide patches, conical \
                                strips both ways, supports.";
     "saddle", "curvature_net": "A saddle near a catenoid, its net cut askew: laid anew, with two \

@@ -8,6 +8,7 @@ use super::intake;
 use super::methods;
 use super::openapi::{Ending, Inputs, Listing, OneJob, Submitting};
 use super::problem::{ApiError, Success};
+use super::references;
 use super::respond;
 use super::upload::{JobWithFile, Posted};
 use crate::jobs::{Accepted, Job, ListQuery, NewJob, Status};
@@ -57,7 +58,7 @@ impl Parameters for SubmitQuery {
             description = "Makes repeating the call harmless: the same key and body give the same job.",
             min_length = 1, max_length = 255, pattern = "^[!-~]+$", nullable = false),
     ),
-    request_body(description = "The job, or a form with the job and a file of points",
+    request_body(description = "The job, or a form with the job and a file of points or a mesh",
         content((JobRequest = "application/json"), (JobWithFile = "multipart/form-data"))),
     responses(
         (status = 200, description = "The job has ended (`wait`, or a replay), or is valid (`validate_only`)",
@@ -79,10 +80,11 @@ pub(super) async fn submit(
     headers: HeaderMap,
     Posted { body, notes }: Posted,
 ) -> Result<Response, ApiError> {
+    let (body, found) = references::resolved(&api, &owner, body).await?;
     let sha = intake::sha256_hex(&body);
     let idempotency = idempotency_key(&headers, &sha)?;
     let (posted, warnings) = check(body.clone()).await?;
-    let warnings = [notes, warnings].concat();
+    let warnings = [notes, found, warnings].concat();
     if query.validate_only {
         let normalized = posted.normalized();
         return Ok(respond::json(

@@ -40,6 +40,7 @@ mod docs;
 mod health;
 mod jobs;
 mod layers;
+mod references;
 mod results;
 
 pub use docs::Document;

@@ -125,13 +125,13 @@ fn merged(job: &[u8], file: &File) -> Result<Posted, ApiError> {
 #[serde(deny_unknown_fields)]
 #[allow(dead_code)] // A schema, never a value.
 pub struct JobWithFile {
-    /// The job, without the points that are in the file; `input.file` says what
-    /// it holds.
+    /// The job, without what is in the file; `input.file` of `fairing` says what
+    /// a table holds.
     #[schema(value_type = super::dto::JobRequest)]
     job: Value,
     /// Points, or a table of offsets, as text: columns apart by comma,
     /// semicolon, tab or blanks, decimal point or comma, with or without
-    /// headers and comments.
+    /// headers and comments. Or a mesh: OBJ, STL or PLY.
     #[schema(format = Binary)]
     file: String,
 }

@@ -1,5 +1,6 @@
 //! The answer of `…/diagnostics`.
 
+use super::cone_spline::ConeSplineDiagnostics;
 use super::curvature_net::CurvatureNetDiagnostics;
 use super::fairing::FairingDiagnostics;
 use super::hull_plates::HullPlatesDiagnostics;
@@ -21,6 +22,8 @@ pub enum Figures {
     Fairing(FairingDiagnostics),
     /// Of `curvature_net`.
     CurvatureNet(CurvatureNetDiagnostics),
+    /// Of `cone_spline`.
+    ConeSpline(ConeSplineDiagnostics),
 }
 
 /// What is known about how a job went, failed jobs included.

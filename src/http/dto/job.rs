@@ -1,5 +1,6 @@
 //! A job on the wire: the request as it is posted, the answer as it is told.
 
+use super::cone_spline::{ConeSplineInput, ConeSplineOptions};
 use super::curvature_net::{CurvatureNetInput, CurvatureNetOptions};
 use super::fairing::{FairingInput, FairingOptions};
 use super::hull_plates::{HullPlatesInput, HullPlatesOptions};
@@ -27,6 +28,8 @@ pub enum JobRequest {
     Fairing(FairingJob),
     /// A surface whose patch borders are lines of curvature.
     CurvatureNet(CurvatureNetJob),
+    /// A strip as few cones, cylinders and planes.
+    ConeSpline(ConeSplineJob),
 }
 
 macro_rules! job_of_a_method {
@@ -91,6 +94,16 @@ job_of_a_method!(
     CurvatureNetInput,
     CurvatureNetOptions,
     "A job for a surface whose patch borders are lines of curvature."
+);
+
+job_of_a_method!(
+    ConeSplineJob,
+    ConeSplineMethod,
+    "cone_spline",
+    ConeSpline,
+    ConeSplineInput,
+    ConeSplineOptions,
+    "A job for a strip as few cones, cylinders and planes."
 );
 
 /// What a job may use.

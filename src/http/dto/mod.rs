@@ -3,15 +3,18 @@
 //! the JSON itself all come from these types.
 
 mod cad;
+pub mod cone_spline;
 pub mod curvature_net;
 pub mod curves;
 pub mod diagnostics;
 pub mod fairing;
+pub mod flat;
 pub mod hull_plates;
 pub mod index;
 pub mod job;
 pub mod mesh;
 pub mod result;
+pub mod surface_input;
 
 pub use curves::{Point, Spline, Surface};
 pub use job::JobRequest;

@@ -1,5 +1,6 @@
 //! What the results of all methods have in common.
 
+use super::cone_spline::ConeSplineResult;
 use super::curvature_net::CurvatureNetResult;
 use super::curves::{NamedCurve, Surface};
 use super::fairing::FairingResult;
@@ -18,6 +19,8 @@ pub enum ResultDocument {
     Fairing(FairingResult),
     /// Of `curvature_net`.
     CurvatureNet(CurvatureNetResult),
+    /// Of `cone_spline`.
+    ConeSpline(ConeSplineResult),
 }
 
 /// What every result says in words, read back from any of them.

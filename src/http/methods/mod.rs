@@ -3,6 +3,7 @@
 //! Everything else (intake, engine, results, the command line) goes through
 //! [`Method`] and knows no method by name.
 
+pub mod cone_spline;
 pub mod curvature_net;
 pub mod fairing;
 pub mod file;
@@ -29,10 +30,11 @@ pub const METHODS: &[&dyn Method] = &[
     &hull_plates::HullPlates,
     &fairing::Fairing,
     &curvature_net::CurvatureNet,
+    &cone_spline::ConeSpline,
 ];
 
 /// Methods that are announced but not built.
-pub const UNBUILT: &[&str] = &["cone_spline"];
+pub const UNBUILT: &[&str] = &[];
 
 /// A method.
 pub trait Method: Sync {

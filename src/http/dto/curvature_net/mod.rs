@@ -4,7 +4,6 @@
 
 mod diagnostics;
 mod drawing;
-mod flat;
 mod result;
 mod specific;
 mod to_request;
@@ -16,6 +15,7 @@ pub use to_request::to_request;
 use super::curves::Point;
 use super::index::Index;
 use super::mesh::MeshInput;
+use super::surface_input::SurfaceInput;
 use crate::methods::curvature_net::request::{Direction, Options};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -111,24 +111,6 @@ pub struct TargetOption {
     /// A B-spline surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surface: Option<SurfaceInput>,
-}
-
-/// A tensor-product B-spline surface, rational when it has weights.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SurfaceInput {
-    /// Degrees in u and v.
-    #[schema(min_items = 2, max_items = 2, value_type = Vec<Index>)]
-    pub degree: [Index; 2],
-    /// Knots in u and in v, multiplicities written out.
-    #[schema(min_items = 2, max_items = 2, value_type = Vec<Vec<f64>>)]
-    pub knots: [Vec<f64>; 2],
-    /// Control points, indexed `[u][v]`.
-    #[schema(min_items = 2, max_items = 10_000)]
-    pub control_points: Vec<Vec<Point>>,
-    /// Positive weights, indexed `[u][v]`; none for a polynomial surface.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub weights: Option<Vec<Vec<f64>>>,
 }
 
 /// Strips that stand on all lines along the normals.

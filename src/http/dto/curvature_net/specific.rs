@@ -2,8 +2,8 @@
 //! offsets, the bill.
 
 use super::super::curves::{Point, finite};
+use super::super::flat::FlatPoint;
 use super::super::index::IndexPair;
-use super::flat::FlatPoint;
 use super::{CurvatureNetOptions, DirectionWord};
 use crate::methods::curvature_net::cyclide::Certificate;
 use crate::methods::curvature_net::structure::{

@@ -10,10 +10,8 @@ use super::super::curves::{Point, check_points};
 use super::super::job::Units;
 use super::super::mesh::MeshInput;
 use super::{
-    CurvatureNetInput, CurvatureNetOptions, CurvatureNetSolver, DirectionWord, SurfaceInput,
-    TargetOption,
+    CurvatureNetInput, CurvatureNetOptions, CurvatureNetSolver, DirectionWord, TargetOption,
 };
-use crate::geometry::BSplineSurface;
 use crate::http::problem::FieldError;
 use crate::methods::curvature_net::Request;
 use crate::methods::curvature_net::request::{
@@ -153,7 +151,7 @@ fn target(o: &TargetOption, units: Units, faults: &mut Vec<FieldError>) -> Optio
             Some(Target::Mesh(mesh))
         }
         (None, Some(surface)) => {
-            let read = spline(surface, units, faults)?;
+            let read = surface.to_surface("/options/target/surface", units, faults)?;
             Some(Target::BSpline(Box::new(read)))
         }
         _ => {
@@ -162,21 +160,4 @@ fn target(o: &TargetOption, units: Units, faults: &mut Vec<FieldError>) -> Optio
             None
         }
     }
-}
-
-fn spline(
-    surface: &SurfaceInput,
-    units: Units,
-    faults: &mut Vec<FieldError>,
-) -> Option<BSplineSurface> {
-    let at = "/options/target/surface";
-    for (i, row) in surface.control_points.iter().enumerate() {
-        check_points(row, &format!("{at}/control_points/{i}"), units, faults);
-    }
-    let weights = surface.weights.as_ref().map(|rows| rows.concat());
-    let points = surface.control_points.iter().flatten().map(|p| (*p).into());
-    let degrees = surface.degree.map(|d| d.0);
-    let read = BSplineSurface::new(degrees, surface.knots.clone(), points.collect(), weights);
-    read.map_err(|error| faults.push(FieldError::new(at, "not-a-spline", error.to_string())))
-        .ok()
 }
