@@ -50,7 +50,7 @@ pub(super) fn best(
     let mut best = lowered(ladder, &rung.fitted, &freedom, enough)?;
     if let Some(other) = rung.other.filter(|_| best.max() > enough) {
         let lowered = lowered(ladder, &other, &freedom, enough)?;
-        if lowered.max() < best.max() {
+        if lowered.max() < best.max() && lowered.worth(ladder.sample).is_finite() {
             best = lowered;
         }
     }
@@ -86,9 +86,10 @@ pub(super) fn for_tolerance(
     let enough = |k: &usize| ladder.segments.value(Aim::Max, *k) <= near;
     let mut count = (1..=ladder.most()).find(enough).unwrap_or(ladder.most());
     let mut found = best(ladder, count, norm, tolerance)?;
+    let height = |f: &Fitted, l: &Ladder| f.max().max(f.worth(l.sample));
     let mut waited = 0;
     let mut least = found.clone();
-    while found.max() > tolerance {
+    while height(&found, ladder) > tolerance {
         if count == ladder.most() || (waited >= PATIENCE && floor > tolerance) {
             return Ok(Choice {
                 fitted: least,
@@ -97,7 +98,7 @@ pub(super) fn for_tolerance(
         }
         count += 1;
         found = best(ladder, count, norm, tolerance)?;
-        if found.max() < (1.0 - GAIN) * least.max() {
+        if height(&found, ladder) < (1.0 - GAIN) * height(&least, ladder) {
             waited = 0;
             least = found.clone();
         } else {
@@ -106,7 +107,7 @@ pub(super) fn for_tolerance(
     }
     while count > 1 {
         let fewer = best(ladder, count - 1, norm, tolerance)?;
-        if fewer.max() > tolerance {
+        if height(&fewer, ladder) > tolerance {
             break;
         }
         (found, count) = (fewer, count - 1);

@@ -63,6 +63,9 @@ impl Effort {
 /// Unknowns that the points hardly see: the g of a plane. See
 /// [`Settings::least_scale`].
 pub(super) const LEAST_SCALE: f64 = 1e-7;
+/// Least 1 + gλ of a patch that can be rolled: so much nearer to the apex than
+/// the middle is an end of a ruling.
+const SLOWEST: f64 = 0.01;
 /// Damping at the start: strains are known to a few percent.
 const DAMPING: f64 = 1e-3;
 
@@ -97,14 +100,20 @@ impl Fitted {
         sample.figures(&self.distances)[2]
     }
 
-    /// The root mean square, or infinity where a patch holds no points: the
-    /// chain has then run out of the strip.
+    /// The root mean square, or infinity for a chain that nobody can roll: a
+    /// patch without points has run out of the strip, and one that holds its
+    /// apex is no plate.
     pub(super) fn worth(&self, sample: &Sample) -> f64 {
         let is_empty = |[low, high]: &[f64; 2]| low >= high;
-        if self.lambda.iter().any(is_empty) {
+        let speeds = self.lambda.iter().zip(&self.chain.strains);
+        let slowest = speeds
+            .flat_map(|(range, strain)| range.map(|l| strain.speed(l)))
+            .fold(f64::INFINITY, f64::min);
+        let rms = self.rms(sample);
+        if self.lambda.iter().any(is_empty) || slowest < SLOWEST || !rms.is_finite() {
             f64::INFINITY
         } else {
-            self.rms(sample)
+            rms
         }
     }
 

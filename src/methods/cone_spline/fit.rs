@@ -14,6 +14,8 @@ use super::strip::{Strip, oriented};
 use super::target::Target;
 use crate::methods::{Control, FitError};
 
+/// So many patches more are tried where a chain cannot be rolled.
+const MORE: usize = 4;
 /// Share by which a simpler chain may be worse without being so.
 const ROUNDING: f64 = 1e-9;
 /// Numbers of patches beyond the chosen one in the error curve.
@@ -52,9 +54,52 @@ pub fn fit_target(
         floor: &best,
     };
     let choice = stage.choose(&mut ladder)?;
-    let done = stage.finish(&ladder, choice)?;
     control.progress("measuring", 90.0);
-    report::outcome(request, &target, done)
+    let deliver = |ladder: &Ladder, choice: Choice| {
+        report::outcome(request, &target, stage.finish(ladder, choice)?)
+    };
+    let first = deliver(&ladder, choice.clone());
+    if first.as_ref().is_ok_and(can_be_rolled) {
+        return first;
+    }
+    for other in stage.others(&mut ladder, &choice)? {
+        let outcome = deliver(&ladder, other);
+        if outcome.as_ref().is_ok_and(can_be_rolled) {
+            return outcome;
+        }
+    }
+    doubtful(first, choice.fitted.chain.len())
+}
+
+/// Whether neighbours meet where their sheets say: not where a ruling passes
+/// an apex.
+fn can_be_rolled(outcome: &Outcome) -> bool {
+    /// Far above rounding, far below what a yard sees.
+    const MEETS: f64 = 1e-6;
+    let meets = |j: &super::outcome::Join| {
+        j.gap <= MEETS * outcome.model_size && j.angle_deg.to_radians() <= MEETS
+    };
+    outcome.joins.iter().all(meets)
+}
+
+/// What is said when nothing that could be rolled was found.
+fn doubtful(outcome: Result<Outcome, FitError>, patches: usize) -> Result<Outcome, FitError> {
+    match outcome {
+        Ok(mut outcome) => {
+            outcome.within_limits = false;
+            outcome.warnings.push(
+                "A joint runs past the apex of its patch: these patches cannot be rolled as they \
+                 are. Ask for another number of patches, or divide the strip."
+                    .to_owned(),
+            );
+            Ok(outcome)
+        }
+        Err(FitError::Numerical(_)) => Err(FitError::Numerical(format!(
+            "no chain of {patches} patches that could be rolled was found; ask for another number \
+             of patches, or divide the strip"
+        ))),
+        Err(other) => Err(other),
+    }
 }
 
 /// Whether patches may have a g and a k.
@@ -104,6 +149,31 @@ impl Stage<'_> {
             fitted = simplified(ladder, fitted, wishes, limit)?;
         }
         Ok(Choice { fitted, reachable })
+    }
+
+    /// Chains to turn to when the chosen one cannot be rolled: other minima of
+    /// as many patches or, for a tolerance, more patches.
+    fn others(&self, ladder: &mut Ladder, choice: &Choice) -> Result<Vec<Choice>, FitError> {
+        let count = choice.fitted.chain.len();
+        let with = |fitted| Choice {
+            fitted,
+            reachable: choice.reachable,
+        };
+        let rung = ladder.rung(count)?;
+        let mut others: Vec<Choice> = std::iter::once(rung.fitted)
+            .chain(rung.other)
+            .map(with)
+            .collect();
+        if let Goal::Tolerance(tolerance) = self.options.goal {
+            let enough = tolerance * self.strip.scale;
+            for more in count + 1..=(count + MORE).min(ladder.most()) {
+                others.push(with(count::best(ladder, more, self.norm(), enough)?));
+            }
+            for fewer in (1..count).rev() {
+                others.push(with(count::best(ladder, fewer, self.norm(), enough)?));
+            }
+        }
+        Ok(others)
     }
 
     /// The chain against all points, in the unit of the request.

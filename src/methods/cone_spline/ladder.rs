@@ -120,9 +120,14 @@ impl<'a> Ladder<'a> {
             Effort::FULL,
             self.control,
         )?;
-        if fitted.worth(self.sample) < here.fitted.worth(self.sample) {
+        // The cut chain itself is as good as the one below.
+        let candidates = [fitted, start];
+        let [relaxed, cut] = candidates.each_ref().map(|f| f.worth(self.sample));
+        let [fitted, start] = candidates;
+        let better = if relaxed <= cut { fitted } else { start };
+        if better.worth(self.sample) < here.fitted.worth(self.sample) {
             self.rungs[patches - 1] = Some(Rung {
-                fitted,
+                fitted: better,
                 other: None,
             });
         }

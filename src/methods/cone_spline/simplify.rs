@@ -39,7 +39,7 @@ pub(super) fn simplified(
             let mut narrower = freedom.clone();
             narrower.strains[patch] = kind;
             let tried = attempt(ladder, &best, &narrower, norm, limit)?;
-            if tried.max() <= limit {
+            if tried.max() <= limit && tried.worth(ladder.sample).is_finite() {
                 (best, freedom) = (tried, narrower);
             }
         }
