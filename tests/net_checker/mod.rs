@@ -124,16 +124,9 @@ pub struct Errors {
 }
 
 impl Errors {
-    pub fn worst(&self) -> f64 {
-        [
-            self.corners,
-            self.arcs,
-            self.mirrors,
-            self.planes,
-            self.skew,
-        ]
-        .into_iter()
-        .fold(0.0, f64::max)
+    /// All of them together: unlike a maximum it does not lose a NaN.
+    pub fn total(&self) -> f64 {
+        self.corners + self.arcs + self.mirrors + self.planes + self.skew
     }
 }
 
