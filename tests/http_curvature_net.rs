@@ -249,8 +249,8 @@ async fn what_is_wrong_is_named_by_its_place() {
         (quad(json!([0, 1, 2])), "/input/mesh/faces/3", "not-a-quad"),
         (
             quad(json!([0, 1, 2, 99])),
-            "/input/mesh/faces/3",
-            "no-such-vertex",
+            "/input/mesh/faces/3/3",
+            "out-of-range",
         ),
         (
             vault(|j| j["options"]["offsets"] = json!([0.1, 0])),
@@ -385,6 +385,47 @@ async fn a_place_on_a_grid_is_told_by_row_and_column() {
         problem["errors"][0]["pointer"], "/input/grid/2/2",
         "{problem}"
     );
+}
+
+/// The vault's mesh as a file gives the same answer as typed.
+#[tokio::test]
+async fn a_mesh_comes_as_a_file() {
+    let service = real_service().await;
+    let mut job = example("vault");
+    job["options"] = json!({"levels": 0});
+    let (_, typed) = result_of(&service, &job).await;
+    let rows = |list: &Value, word: &str, add: f64| -> String {
+        let row = |r: &Value| {
+            let numbers = r.as_array().unwrap().iter();
+            let numbers: Vec<String> = numbers
+                .map(|x| (x.as_f64().unwrap() + add).to_string())
+                .collect();
+            format!("{word} {}\n", numbers.join(" "))
+        };
+        list.as_array().unwrap().iter().map(row).collect()
+    };
+    let mesh = &job["input"]["mesh"];
+    let file = rows(&mesh["vertices"], "v", 0.0) + &rows(&mesh["faces"], "f", 1.0);
+    job["input"] = json!({});
+    let form = |job: &Value| {
+        format!(
+            "--x\r\nContent-Disposition: form-data; name=\"job\"\r\n\r\n{job}\r\n--x\r\n\
+             Content-Disposition: form-data; name=\"file\"; filename=\"vault.obj\"\r\n\r\n\
+             {file}\r\n--x--\r\n"
+        )
+    };
+    let headers = [("content-type", "multipart/form-data; boundary=x")];
+    let answer = service
+        .post_with("/v1/jobs?wait=55", &headers, form(&job))
+        .await;
+    assert_eq!(answer.status, StatusCode::OK, "{:?}", answer.body);
+    let place = format!("{}/result", answer.header("location"));
+    let uploaded = service.get(&place).await.json();
+    assert_eq!(uploaded["surfaces"], typed["surfaces"]);
+    job["input"] = json!({"grid": [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]]});
+    let answer = service.post_with("/v1/jobs", &headers, form(&job)).await;
+    let problem = answer.problem(422, "invalid-job");
+    assert_eq!(problem["errors"][0]["code"], "ambiguous", "{problem}");
 }
 
 #[tokio::test]

@@ -1,13 +1,15 @@
 //! `curvature_net` as the HTTP layer knows it.
 
-use super::{Fitted, Format, Header, Job, Method, Schemas, Words, json_line, misread};
+use super::file::take_mesh;
+use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
 use crate::http::dto::Point;
 use crate::http::dto::curvature_net::{
     CurvatureNetInput, CurvatureNetOptions, CurvatureNetResult, to_request,
 };
 use crate::http::dto::job::{CurvatureNetJob, Normalized};
-use crate::http::problem::{ApiError, FieldError};
+use crate::http::problem::{ApiError, Code, FieldError};
 use crate::http::schema_check::Rule;
+use crate::http::upload::File;
 use crate::methods::curvature_net::{self, Request, request::Input};
 use crate::methods::{Control, FitError, Issue};
 use serde_json::Value;
@@ -104,6 +106,10 @@ impl Method for CurvatureNet {
         Ok(Box::new(NetJob { job, request }))
     }
 
+    fn take_file(&self, job: &mut Value, file: &File) -> Result<Vec<String>, ApiError> {
+        take_mesh(job, file, &["grid"]).map_err(|fault| ApiError::at(Code::InvalidJob, vec![fault]))
+    }
+
     fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError> {
         let document: CurvatureNetResult =
             serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
@@ -154,14 +160,7 @@ impl Job for NetJob {
 
     fn fit(&self, input_sha256: String, control: &dyn Control) -> Result<Fitted, FitError> {
         let outcome = curvature_net::fit(&self.request, control).map_err(|e| self.renamed(e))?;
-        let document = CurvatureNetResult::new(&self.job, input_sha256, &outcome);
-        Ok(Fitted {
-            result: json_line(&document)?,
-            diagnostics: json_line(&document.diagnostics)?,
-            within_limits: outcome.within_limits,
-            message: outcome.summary.first().cloned().unwrap_or_default(),
-            warnings: outcome.warnings,
-        })
+        Fitted::of(&CurvatureNetResult::new(&self.job, input_sha256, &outcome))
     }
 }
 

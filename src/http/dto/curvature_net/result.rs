@@ -2,7 +2,8 @@
 //! that the same job gives the same bytes.
 
 use super::super::curves::{Surface, finite};
-use super::super::job::{CurvatureNetJob, CurvatureNetMethod, Units, VerdictWord};
+use super::super::job::{CurvatureNetJob, CurvatureNetMethod};
+use super::super::result::{Contents, result_of_a_method};
 use super::specific::{CurvatureNetSpecific, VertexResult, vector};
 use super::{CurvatureNetDiagnostics, DirectionWord};
 use crate::geometry::CyclidePatch;
@@ -10,34 +11,19 @@ use crate::methods::curvature_net::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// The result of a `curvature_net` job. Lengths in `units`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
-pub struct CurvatureNetResult {
-    /// The fitting method.
-    pub method: CurvatureNetMethod,
-    /// The job's label.
-    pub label: Option<String>,
-    /// The unit of all lengths here.
-    pub units: Units,
-    /// The version that made it.
-    pub engine_version: String,
-    /// SHA-256 of the job it was made from.
-    pub input_sha256: String,
-    /// Whether everything is as asked.
-    pub verdict: VerdictWord,
-    /// Sentences, the verdict first.
-    pub summary: Vec<String>,
-    /// What you should know about the input.
-    pub warnings: Vec<String>,
-    /// The smooth surface (role `smooth`, bicubic), the patches of the cyclide
-    /// spline (role `cyclide`, rational, degree [2,2], row after row) and those
-    /// of the offsets (role `offset`). Control points indexed `[u][v]`.
-    pub surfaces: Vec<Surface>,
-    /// What only this method gives.
-    pub method_specific: CurvatureNetSpecific,
-    /// All figures.
-    pub diagnostics: CurvatureNetDiagnostics,
-}
+result_of_a_method!(
+    CurvatureNetResult,
+    CurvatureNetJob,
+    CurvatureNetMethod,
+    CurvatureNetSpecific,
+    CurvatureNetDiagnostics,
+    about = "The result of a `curvature_net` job. Lengths in `units`.",
+    verdict = "Whether everything is as asked.",
+    summary = "Sentences, the verdict first.",
+    surfaces = "The smooth surface (role `smooth`, bicubic), the patches of the cyclide\nspline (role `cyclide`, rational, degree `[2, 2]`, row after row) and those\nof the offsets (role `offset`); control points indexed `[u][v]`.",
+    curves = "None: the borders of the patches are the curves.",
+    diagnostics = "All figures.",
+);
 
 /// Roles of the surfaces.
 pub(super) const SMOOTH: &str = "smooth";
@@ -50,23 +36,16 @@ impl CurvatureNetResult {
     /// The document of an outcome.
     #[must_use]
     pub fn new(job: &CurvatureNetJob, input_sha256: String, outcome: &Outcome) -> Self {
-        CurvatureNetResult {
-            method: job.method,
-            label: job.label.clone(),
-            units: job.units,
-            engine_version: env!("CARGO_PKG_VERSION").into(),
-            input_sha256,
-            verdict: if outcome.within_limits {
-                VerdictWord::WithinLimits
-            } else {
-                VerdictWord::OutsideLimits
-            },
+        let contents = Contents {
+            within_limits: outcome.within_limits,
             summary: outcome.summary.clone(),
             warnings: outcome.warnings.clone(),
             surfaces: surfaces(outcome),
+            curves: Vec::new(),
             method_specific: specific(job, outcome),
             diagnostics: outcome.into(),
-        }
+        };
+        Self::of(job, input_sha256, contents)
     }
 }
 

@@ -44,7 +44,7 @@ fn net(input: &CurvatureNetInput, units: Units, faults: &mut Vec<FieldError>) ->
                 let message = "\"closed\" goes with a grid; how a mesh closes is found from it";
                 faults.push(FieldError::new("/input/closed", "unexpected", message));
             }
-            Some(Input::Mesh(polygons(mesh, "/input/mesh", units, faults)))
+            polygons(mesh, "/input/mesh", units, faults).map(Input::Mesh)
         }
         (None, Some(rows)) => grid(rows, &input.closed, units, faults).map(Input::Grid),
         (None, None) => {
@@ -61,14 +61,17 @@ fn net(input: &CurvatureNetInput, units: Units, faults: &mut Vec<FieldError>) ->
     }
 }
 
-fn polygons(mesh: &MeshInput, at: &str, units: Units, faults: &mut Vec<FieldError>) -> QuadMesh {
-    check_points(&mesh.vertices, &format!("{at}/vertices"), units, faults);
-    QuadMesh {
-        vertices: mesh.vertices.iter().map(|p| (*p).into()).collect(),
-        faces: (mesh.faces.iter())
-            .map(|face| face.0.corners().to_vec())
-            .collect(),
-    }
+fn polygons(
+    mesh: &MeshInput,
+    at: &str,
+    units: Units,
+    faults: &mut Vec<FieldError>,
+) -> Option<QuadMesh> {
+    let mesh = mesh.to_mesh(at, units, faults)?;
+    Some(QuadMesh {
+        vertices: mesh.vertices().to_vec(),
+        faces: mesh.faces().iter().map(|f| f.corners().to_vec()).collect(),
+    })
 }
 
 fn grid(
@@ -147,8 +150,7 @@ fn target(o: &TargetOption, units: Units, faults: &mut Vec<FieldError>) -> Optio
     let at = "/options/target";
     match (&o.mesh, &o.surface) {
         (Some(mesh), None) => {
-            let mesh = polygons(mesh, "/options/target/mesh", units, faults);
-            Some(Target::Mesh(mesh))
+            polygons(mesh, "/options/target/mesh", units, faults).map(Target::Mesh)
         }
         (None, Some(surface)) => {
             let read = surface.to_surface("/options/target/surface", units, faults)?;
