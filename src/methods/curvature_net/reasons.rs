@@ -4,6 +4,7 @@ use super::bend::Bend;
 use super::diagnose::{At, ShapeFigures, UmbilicFigures};
 use super::surface::Surface;
 use nalgebra::Point3;
+use std::fmt;
 
 /// A vertex of the coarse net that went further than is usual.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +34,21 @@ pub enum Why {
     NearlyRound(f64),
     /// Nothing here: it follows its neighbours.
     Neighbours,
+}
+
+/// As part of a sentence that names the vertex.
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Why::Skew(angle) => write!(f, "the lines of the start cross at {angle:.0}° there"),
+            Why::OffPrincipal(angle) => write!(
+                f,
+                "the lines of the start run at {angle:.0}° to its lines of curvature there"
+            ),
+            Why::NearlyRound(_) => f.write_str("the start is bent alike in all directions there"),
+            Why::Neighbours => f.write_str("it follows its neighbours"),
+        }
+    }
 }
 
 /// Places of the start between which its curvatures pass each other.

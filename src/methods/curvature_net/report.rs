@@ -4,7 +4,7 @@ use super::Smooth;
 use super::diagnose::{At, TargetFigures};
 use super::lines::REACHED;
 use super::outcome::{Cyclides, Outcome};
-use super::reasons::{Crossing, Moved, Why};
+use super::reasons::{Crossing, Moved};
 
 /// Tangent planes of neighbours that differ by more than this, radians, do not
 /// come of residuals: the patches are exact, but one lies upside down.
@@ -178,17 +178,9 @@ const NAMED: usize = 3;
 /// Which vertices went furthest, and what about the start asked for it.
 fn why(moved: &[Moved]) -> String {
     let one = |m: &Moved| {
-        let reason = match m.why {
-            Why::Skew(angle) => format!("the lines of the start cross at {angle:.0}° there"),
-            Why::OffPrincipal(angle) => {
-                format!("the lines of the start run at {angle:.0}° to its lines of curvature there")
-            }
-            Why::NearlyRound(_) => "the start is bent alike in all directions there".to_owned(),
-            Why::Neighbours => "it follows its neighbours".to_owned(),
-        };
         format!(
-            "vertex {} (row {}, column {}) by {:.2} edges and {:.1}°: {reason}",
-            m.vertex, m.place[0], m.place[1], m.moved, m.turned_deg
+            "vertex {} (row {}, column {}) by {:.2} edges and {:.1}°: {}",
+            m.vertex, m.place[0], m.place[1], m.moved, m.turned_deg, m.why
         )
     };
     let named: Vec<String> = moved.iter().take(NAMED).map(one).collect();

@@ -23,6 +23,8 @@ pub struct CurvatureNetDiagnostics {
     pub umbilics: UmbilicResult,
     /// How far it is from the start.
     pub shape: ShapeResult,
+    /// How far it is from the target; null without one.
+    pub target: Option<TargetResult>,
     /// The cyclide spline; null unless asked.
     pub cyclides: Option<CyclideResult>,
     /// Iterations of the solver for the smooth surface, level by level and
@@ -70,10 +72,46 @@ pub struct UmbilicResult {
     pub mean_difference: f64,
     /// Patches with an umbilic, by row and column.
     pub patches: Vec<IndexPair>,
+    /// Where the start itself makes umbilics unavoidable; null where it does
+    /// not.
+    pub crossing: Option<CrossingResult>,
+}
+
+/// Places of the start between which its curvatures pass each other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct CrossingResult {
+    /// Where the line along u is bent more, by most: κ_u − κ_v.
+    pub u: PlaceResult,
+    /// Where the line along v is: κ_v − κ_u.
+    pub v: PlaceResult,
+}
+
+/// How far the smooth surface is from a target. Lengths.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct TargetResult {
+    /// Mean distance of a vertex.
+    pub distance_mean: f64,
+    /// The largest.
+    pub distance_max: PlaceResult,
+}
+
+/// A vertex of the given net that could not be kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct LeftResult {
+    /// Its index among the given vertices; of a grid row · columns + column.
+    pub vertex: usize,
+    /// Where it is now.
+    pub at: Point,
+    /// Its way, in mean edges.
+    pub moved: f64,
+    /// The turn of its normal, degrees.
+    pub turned_deg: f64,
+    /// What about the start asked for it.
+    pub why: String,
 }
 
 /// How far the smooth surface is from the start.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct ShapeResult {
     /// Mean way of a vertex, in mean edges.
     pub moved_mean: f64,
@@ -83,6 +121,9 @@ pub struct ShapeResult {
     pub turned_mean_deg: f64,
     /// The largest.
     pub turned_max_deg: PlaceResult,
+    /// Where the net as a whole could not be kept, the vertices that went
+    /// furthest, with reasons.
+    pub left: Vec<LeftResult>,
 }
 
 /// How exact the cyclide spline is, and how far from the smooth surface.
@@ -169,17 +210,37 @@ impl From<&Outcome> for CurvatureNetDiagnostics {
                 least_difference: place(&umbilics.least_difference, 1.0),
                 mean_difference: umbilics.mean_difference,
                 patches: umbilics.patches.iter().map(|p| (*p).into()).collect(),
+                crossing: smooth.crossing.as_ref().map(|c| CrossingResult {
+                    u: place(&c.u, 1.0),
+                    v: place(&c.v, 1.0),
+                }),
             },
             shape: ShapeResult {
                 moved_mean: smooth.shape.mean_move,
                 moved_max: place(&smooth.shape.max_move, 1.0),
                 turned_mean_deg: smooth.shape.mean_turn_deg,
                 turned_max_deg: place(&smooth.shape.max_turn_deg, 1.0),
+                left: left(outcome),
             },
+            target: smooth.target.as_ref().map(|t| TargetResult {
+                distance_mean: t.mean_distance,
+                distance_max: place(&t.max_distance, 1.0),
+            }),
             cyclides: outcome.cyclides.as_ref().map(Into::into),
             steps: steps(outcome),
         }
     }
+}
+
+fn left(outcome: &Outcome) -> Vec<LeftResult> {
+    let moved = outcome.smooth.moved.iter().map(|m| LeftResult {
+        vertex: m.vertex,
+        at: m.point.into(),
+        moved: m.moved,
+        turned_deg: m.turned_deg,
+        why: m.why.to_string(),
+    });
+    moved.collect()
 }
 
 fn steps(outcome: &Outcome) -> Vec<StepResult> {
