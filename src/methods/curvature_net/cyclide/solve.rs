@@ -42,8 +42,14 @@ const RUNS: i32 = 2;
 /// Steps of a run: closeness and fairness are linear in the unknowns and the
 /// mirrors nearly so.
 const STEPS: usize = 2;
-/// Most steps of the last run; Newton's iteration needs three or four.
-const LAST_STEPS: usize = 30;
+/// Newton's iteration on the mirrors alone goes on by so many steps until the
+/// mirrors are [`ENOUGH`]; it needs three or four.
+const LAST_STEPS: usize = 3;
+/// At most so often.
+const LAST_RUNS: usize = 10;
+/// Near rounding even on large nets, where the solver's own tests for the end
+/// would still see something to gain.
+const ENOUGH: f64 = 1e-13;
 
 /// What the solver takes of making the cyclide spline and all from it, percent.
 const SHARE: f64 = 75.0;
@@ -53,24 +59,29 @@ const SHARE: f64 = 75.0;
 /// # Errors
 /// [`Stop`] when the control says so.
 pub fn solve(start: &Net, control: &dyn Control) -> Result<Spline, Stop> {
-    let mut problem = MirroredFrames::new(
-        start,
-        Soft {
-            closeness: 0.0,
-            fairness: 0.0,
-        },
-    );
+    let nothing = Soft {
+        closeness: 0.0,
+        fairness: 0.0,
+    };
+    let mut problem = MirroredFrames::new(start, nothing);
     let mut x = vec![0.0; problem.dimension()];
     let mut iterations = 0;
-    for run in 0..=RUNS {
+    for run in 0..RUNS {
         control.progress("cyclides", SHARE * f64::from(run) / f64::from(RUNS + 1));
-        let last = run == RUNS;
-        let left = if last { 0.0 } else { FADING.powi(run) };
+        let left = FADING.powi(run);
         problem.soft = Soft {
             closeness: CLOSENESS * left,
             fairness: FAIRNESS * left,
         };
-        iterations += minimize(&problem, &mut x, &settings(last), control)?.iterations;
+        iterations += minimize(&problem, &mut x, &settings(STEPS), control)?.iterations;
+    }
+    control.progress("cyclides", SHARE * f64::from(RUNS) / f64::from(RUNS + 1));
+    problem.soft = nothing;
+    for _ in 0..LAST_RUNS {
+        iterations += minimize(&problem, &mut x, &settings(LAST_STEPS), control)?.iterations;
+        if problem.worst_mirror(&x).0 <= ENOUGH {
+            break;
+        }
     }
     let (mirror, worst_edge) = problem.worst_mirror(&x);
     Ok(Spline {
@@ -81,11 +92,10 @@ pub fn solve(start: &Net, control: &dyn Control) -> Result<Spline, Stop> {
     })
 }
 
-fn settings(last: bool) -> Settings {
+fn settings(iterations: usize) -> Settings {
     Settings {
-        iterations: if last { LAST_STEPS } else { STEPS },
-        // Far below what the mirrors are asked, yet above rounding.
-        gradient: 1e-13,
+        iterations,
+        gradient: 1e-15,
         step: 1e-15,
         reduction: 0.0,
         // The mirrors alone leave a family of nets free: the damping is what

@@ -4,3 +4,4 @@ mod input;
 mod models;
 mod nets;
 mod targets;
+mod whole;
