@@ -115,7 +115,11 @@ pub(in super::super) fn stretched<const D: usize>(
         for _ in 0..STRETCH.1 {
             stretch *= step;
             let (matrix, _) = with(stretch);
-            let (value, lambda) = criterion(&matrix, Some(near))?;
+            let (value, lambda) = match criterion(&matrix, Some(near)) {
+                // So much stretch is beyond what numbers can solve.
+                Err(FitError::Numerical(_)) => break,
+                other => other?,
+            };
             near = lambda;
             // Not a number where a determinant failed: no improvement.
             if value.is_nan() || value >= least {

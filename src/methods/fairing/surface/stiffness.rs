@@ -179,7 +179,9 @@ pub(in super::super) fn choose<const D: usize>(
         let mut reach = start;
         while (reach - end).abs() > 0.5 * WALK {
             reach += step;
-            if !search.try_at(reach)? {
+            let better = search.try_at(reach)?;
+            // Where nothing was solvable yet, further on may be.
+            if !better && search.best.is_some() {
                 break;
             }
             at = reach;
