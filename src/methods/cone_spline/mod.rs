@@ -24,6 +24,22 @@
 //! Residuals are the distances of the strip's vertices, weighted by area, in
 //! closed form with closed derivatives (`geometry::cone`).
 //!
+//! # What was changed against the paper, and why
+//! * The paper fits a B-spline ruled surface with penalties for being conical,
+//!   then stitches cones by rigid motions, which drifts. Here every chain that
+//!   is looked at is a cone spline, so nothing is left to stitch.
+//! * Its K-means on axes finds patches that look alike, not patches that fit,
+//!   and knows no planes. Here dynamic programming over the cost of every
+//!   interval finds the best division for every number of patches at once.
+//! * The number of patches follows from a tolerance, or from the noise.
+//!
+//! # Limits
+//! * A strip whose rulings are found badly (a helix of several turns) may lead
+//!   to no chain that can be rolled, which is then said.
+//! * The floor is the best of the fits made, no proven bound; strips of more
+//!   than some thousand vertices are divided on a part of them.
+//! * The error curve is by least squares, whatever norm the answer is for.
+//!
 //! # Sources
 //! Zhang, Bo, Zheng & Zhang, *Cone spline surface fitting* (in Chinese); Chen,
 //! Lee, Leopoldseder, Pottmann, Randrup & Wallner 1999 (GMIP 61); Leopoldseder

@@ -73,16 +73,6 @@ impl Default for Classes {
     }
 }
 
-/// Which algorithm fits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Solver {
-    /// This crate's own: the exactly G¹ chain.
-    #[default]
-    Own,
-    /// The paper's, for comparison.
-    Paper,
-}
-
 /// What is asked of the patches. Lengths in the unit of the strip.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
@@ -104,8 +94,6 @@ pub struct Options {
     pub thickness: Option<f64>,
     /// Least bend radius the yard can roll, > 0.
     pub min_bend_radius: Option<f64>,
-    /// Which algorithm.
-    pub solver: Solver,
 }
 
 impl Default for Options {
@@ -119,7 +107,6 @@ impl Default for Options {
             cut: None,
             thickness: None,
             min_bend_radius: None,
-            solver: Solver::Own,
         }
     }
 }

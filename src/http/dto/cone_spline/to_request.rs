@@ -5,7 +5,7 @@ use super::super::job::Units;
 use super::{ConeSplineInput, ConeSplineOptions, KindWord, NormOption};
 use crate::http::problem::FieldError;
 use crate::methods::cone_spline::Request;
-use crate::methods::cone_spline::request::{Classes, Goal, Input, Norm, Options, Solver};
+use crate::methods::cone_spline::request::{Classes, Goal, Input, Norm, Options};
 
 /// The name of a strip that has none.
 const UNNAMED: &str = "strip";
@@ -110,6 +110,5 @@ fn asked(o: &ConeSplineOptions, units: Units, faults: &mut Vec<FieldError>) -> O
         cut: o.cut.map(Into::into),
         thickness: o.thickness,
         min_bend_radius: o.min_bend_radius,
-        solver: Solver::Own,
     }
 }
