@@ -154,7 +154,7 @@ async fn unknown_formats_name_the_known() {
     let problem = problem.problem(404, "format-not-available");
     assert_eq!(
         problem["detail"],
-        "there is no result.dwg; there are json, obj, csv, svg, step, igs"
+        "there is no result.dwg; there are json, obj, csv, svg, step, igs, dxf"
     );
 }
 
