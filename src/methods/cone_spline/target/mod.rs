@@ -3,15 +3,15 @@
 //!
 //! 1. The mesh is one piece of surface without creases, its faces turned the
 //!    way that most of its area is; anything else is refused with its place
-//!    ([`reading`], [`crease`]). A ring is cut along the shortest way across
-//!    ([`cut`]).
+//!    (`reading`, `crease`). A ring is cut along the shortest way across
+//!    (`cut`).
 //! 2. On the outline the four corners are where its direction *within the
 //!    surface* turns most, seen over a part of the strip's width, so that
-//!    neither noise nor a sharp bend makes corners ([`outline`], [`corners`]).
+//!    neither noise nor a sharp bend makes corners (`outline`, `corners`).
 //! 3. Stations of the two long sides are paired by the shortest monotone path
 //!    over (i, j), its cost the twist of the ruling: with tangents s, t of the
 //!    sides at its ends and direction r, `|r×s/|r×s| − r×t/|r×t||²`, and a
-//!    share of how the normals of the mesh lie to it ([`pairing`]). Of the two
+//!    share of how the normals of the mesh lie to it (`pairing`). Of the two
 //!    ways to take sides and ends the short way across counts, unless the
 //!    rulings of the long one are much nearer to the mesh.
 //!
