@@ -534,16 +534,9 @@ async fn going_down_refuses_jobs_and_readiness() {
 }
 
 #[tokio::test]
-async fn unbuilt_methods_are_told_apart_from_slips() {
+async fn a_slip_in_a_methods_name_is_told() {
     let service = idle_service().await;
     let mut job = job("deck");
-    for name in mouldloft::http::methods::UNBUILT {
-        job["method"] = (*name).into();
-        service
-            .post("/v1/jobs", job.to_string())
-            .await
-            .problem(422, "method-not-available");
-    }
     job["method"] = "hull_platse".into();
     let problem = service
         .post("/v1/jobs", job.to_string())

@@ -3,7 +3,7 @@
 //! and the command line all come this way, so they refuse the same jobs.
 
 use super::did_you_mean::nearest;
-use super::methods::{self, Job, Method, UNBUILT};
+use super::methods::{self, Job, Method};
 use super::problem::{ApiError, Code, FieldError};
 use super::strict_json::{self, excerpt};
 use serde_json::Value;
@@ -12,8 +12,8 @@ use sha2::{Digest, Sha256};
 /// Reads a job.
 ///
 /// # Errors
-/// `syntax` with the place of the first fault; `method-not-available`;
-/// `invalid-job` with every broken rule.
+/// `syntax` with the place of the first fault; `invalid-job` with every broken
+/// rule.
 pub fn read_job(bytes: &[u8]) -> Result<Box<dyn Job>, ApiError> {
     let (method, value) = read_value(bytes)?;
     method
@@ -53,13 +53,6 @@ fn method_of(value: &Value) -> Result<&'static dyn Method, ApiError> {
         Value::String(name) => {
             if let Some(method) = methods::named(name) {
                 return Ok(method);
-            }
-            if UNBUILT.contains(&name.as_str()) {
-                let detail = format!(
-                    "{name} is planned but not built yet; there are {}",
-                    known.join(", ")
-                );
-                return Err(ApiError::new(Code::MethodNotAvailable, detail));
             }
             let fault = fault("not-one-of", one_of).value(excerpt(&value["method"]));
             match nearest(name, &known) {
@@ -240,15 +233,6 @@ mod tests {
                 [(format!("{at}{pointer}"), code.into())],
                 "{text}"
             );
-        }
-    }
-
-    #[test]
-    fn unbuilt_methods_are_known() {
-        for name in UNBUILT {
-            let job = format!("{{\"method\":\"{name}\"}}");
-            let error = read_job(job.as_bytes()).unwrap_err();
-            assert_eq!(error.code, Code::MethodNotAvailable);
         }
     }
 }

@@ -210,7 +210,7 @@ problem_sets! {
     Everywhere = [];
     /// What can go wrong when a job is submitted.
     Submitting = [
-        Syntax, InvalidHeader, BodyTimeout, InvalidJob, MethodNotAvailable, KeyReused,
+        Syntax, InvalidHeader, BodyTimeout, InvalidJob, KeyReused,
         QueueFull, StorageFull, Draining, StoreUnavailable,
     ];
     /// What can go wrong when jobs are listed.

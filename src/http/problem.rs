@@ -86,8 +86,6 @@ codes! {
     RangeNotSatisfiable = "range-not-satisfiable", "The range lies outside the file";
     /// The job breaks a rule.
     InvalidJob = "invalid-job", "The job is not valid";
-    /// A method that is known but not built yet.
-    MethodNotAvailable = "method-not-available", "The fitting method is not available yet";
     /// The idempotency key belongs to another body.
     KeyReused = "idempotency-key-reused", "The idempotency key was used with another body";
     /// A bug; the log holds the details under the request id.
@@ -127,9 +125,7 @@ impl Code {
             Code::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             Code::UnsupportedMediaType => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             Code::RangeNotSatisfiable => StatusCode::RANGE_NOT_SATISFIABLE,
-            Code::InvalidJob | Code::MethodNotAvailable | Code::KeyReused => {
-                StatusCode::UNPROCESSABLE_ENTITY
-            }
+            Code::InvalidJob | Code::KeyReused => StatusCode::UNPROCESSABLE_ENTITY,
             Code::Internal => StatusCode::INTERNAL_SERVER_ERROR,
             Code::QueueFull
             | Code::StorageFull

@@ -85,15 +85,7 @@ impl Method for ConeSpline {
     }
 
     fn formats(&self) -> &'static [Format] {
-        &[
-            Format::Json,
-            Format::Obj,
-            Format::Csv,
-            Format::Svg,
-            Format::Step,
-            Format::Igs,
-            Format::Dxf,
-        ]
+        &Format::ALL
     }
 
     fn rule(&self) -> Result<&'static Rule, &'static String> {

@@ -33,9 +33,6 @@ pub const METHODS: &[&dyn Method] = &[
     &cone_spline::ConeSpline,
 ];
 
-/// Methods that are announced but not built.
-pub const UNBUILT: &[&str] = &[];
-
 /// A method.
 pub trait Method: Sync {
     /// Its word in a job.
@@ -227,10 +224,5 @@ mod tests {
                 method.rule().err()
             );
         }
-    }
-
-    #[test]
-    fn no_method_is_both_built_and_announced() {
-        assert!(names().iter().all(|name| !UNBUILT.contains(name)));
     }
 }
