@@ -193,6 +193,10 @@ fn draw(canvas: &mut Canvas, pattern: &Pattern, laid: &Laid, (corner, scale): (S
     let outline: Vec<Spot> = closed.map(map).collect();
     canvas.polyline(&outline, stroke(INK, 0.25));
     for (at, label) in &pattern.labels {
-        canvas.text(map(at), plain(INK), label);
+        let style = TextStyle {
+            anchor: Anchor::Middle,
+            ..plain(INK)
+        };
+        canvas.text(map(at), style, label);
     }
 }

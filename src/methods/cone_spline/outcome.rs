@@ -33,7 +33,7 @@ pub struct Outcome {
     /// Signed distance of every vertex, in the order of [`super::target::Target::points`];
     /// positive on the side of the strip's normals.
     pub vertex_distances: Vec<f64>,
-    /// What no number of patches can beat.
+    /// The best developable surface found, which more patches can hardly beat.
     pub floor: Floor,
     /// `false`: the tolerance lies below what patches can reach.
     pub reachable: bool,

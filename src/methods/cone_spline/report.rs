@@ -19,7 +19,7 @@ pub(super) struct Fitted {
     pub chain: Chain,
     /// What other numbers of patches would give.
     pub error_curve: Vec<ErrorPoint>,
-    /// What no number of patches can beat.
+    /// The best developable surface found, which more patches can hardly beat.
     pub floor: Floor,
     /// `false`: the tolerance lies below what patches can reach.
     pub reachable: bool,
@@ -112,8 +112,8 @@ fn summary(request: &Request, outcome: &Outcome) -> Vec<String> {
         sentences.push(unreachable(outcome));
     } else {
         sentences.push(format!(
-            "No number of patches comes nearer than about {} (mean {}): that is as near as a \
-             developable surface gets to this strip.",
+            "The best developable surface that was found strays by {} (mean {}): with more patches \
+             hardly less can be had.",
             short(outcome.floor.max),
             short(outcome.floor.mean)
         ));
@@ -186,9 +186,9 @@ fn reach(outcome: &Outcome) -> String {
 
 fn unreachable(outcome: &Outcome) -> String {
     format!(
-        "The tolerance is not reachable with any number of cones, cylinders and planes in one \
-         strip: the best developable surface found strays by {} at most and {} on average. Allow \
-         more, or divide the strip lengthwise.",
+        "No cones, cylinders and planes in one strip were found that keep the tolerance: the best \
+         developable surface found strays by {} at most and {} on average. Allow more, or divide \
+         the strip lengthwise.",
         short(outcome.floor.max),
         short(outcome.floor.mean)
     )

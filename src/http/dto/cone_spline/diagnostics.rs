@@ -16,7 +16,7 @@ pub struct ConeSplineDiagnostics {
     pub to_surface: ConeDistance,
     /// From the patches to the strip's triangles.
     pub to_mesh: ConeDistance,
-    /// What no number of patches can beat: the best developable surface found.
+    /// The best developable surface found, which more patches can hardly beat.
     pub floor: ConeFloor,
     /// False: the tolerance lies below what patches can reach.
     pub reachable: bool,
