@@ -44,6 +44,7 @@
 
 pub mod curve;
 pub mod offsets;
+mod student;
 pub mod surface;
 
 use super::{Control, FitError, Issue};

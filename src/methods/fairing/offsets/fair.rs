@@ -8,15 +8,14 @@ use crate::methods::FitError;
 use crate::methods::fairing::surface;
 use crate::solver::Control;
 use nalgebra::{Point3, Vector3};
-use surface::fit::{Fit, robust};
-use surface::grid_fit::{DEGREE, order, stretched};
+use surface::fit::Fit;
+use surface::grid_fit::{DEGREE, best, order};
 use surface::net::{Net, Sheet};
 use surface::outcome::Parametrisation;
 use surface::region::Region;
 use surface::report::moved;
 use surface::request::{Points, Tolerance};
-use surface::springs::{Springs, gather};
-use surface::stiffness::choose;
+use surface::springs::Springs;
 use surface::task::{Layout, Task};
 
 /// An edge zero is the hull's ending where the surface that never saw it is
@@ -145,27 +144,19 @@ fn field(task: &Task, families: &[Lines; 2], control: &dyn Control) -> Result<Fi
         value: task.points.iter().map(|p| [p.y]).collect(),
         weight: task.weight.clone(),
     };
-    let (energy, model) = stretched(
+    let best = best(
         task,
         (&net, &springs),
         (order(*size, &task.knuckles), 1.0),
         control,
     )?;
-    let (chosen, weight, noise) = if task.robust {
-        let r = robust(&net, &springs, (&energy, model), (None, control))?;
-        (r.chosen, r.weight, r.scale)
-    } else {
-        let chosen = choose(&gather(&net, &springs), &energy, model, (None, control))?;
-        let noise = chosen.noise;
-        (chosen, springs.weight, noise)
-    };
     let [nu, nv] = net.counts();
     let mut points = vec![Vector3::zeros(); nu * nv];
     for i in 0..nu {
         for j in 0..nv {
             let k = net.index(i, j);
             let (x, z) = (families[0].control[i], families[1].control[j]);
-            points[k] = Vector3::new(x, chosen.control[k][0], z);
+            points[k] = Vector3::new(x, best.chosen.control[k][0], z);
         }
     }
     Ok(Fit {
@@ -175,11 +166,12 @@ fn field(task: &Task, families: &[Lines; 2], control: &dyn Control) -> Result<Fi
             plane: false,
         },
         at,
-        lambda: chosen.lambda,
-        noise,
-        weight,
-        energy,
-        model,
+        lambda: best.chosen.lambda,
+        noise: best.noise,
+        weight: best.weight,
+        energy: best.energy,
+        model: best.model,
+        monomials: best.monomials,
     })
 }
 

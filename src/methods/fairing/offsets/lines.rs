@@ -17,11 +17,14 @@ const BLENDS: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 const LEAST_SLOPE: f64 = 0.05;
 /// Samples of the slope a span.
 const SAMPLES: usize = 4;
-/// Weight of the energy against the data, both at the balance of traces, and
-/// corrections that then take the misfit to rounding.
-const ENERGY: (f64, usize) = (1e-8, 4);
+/// Weights of the energy against the data, both at the balance of traces: the
+/// next where the one before leaves nothing to divide by, and most corrections
+/// that then take the misfit to rounding.
+const ENERGY: [(f64, usize); 3] = [(1e-8, 4), (1e-6, 20), (1e-4, 100)];
 /// How far the net goes past the outermost lines, in steps.
 const PAST: f64 = 0.25;
+/// Misfit that is rounding, as share of the extent.
+const MET: f64 = 1e-15;
 
 /// One family of lines.
 #[derive(Debug, Clone)]
@@ -72,17 +75,33 @@ fn through(places: &[f64], at: Vec<f64>, degree: usize) -> Result<Lines, FitErro
     }
     let energy = gram(&knots, order);
     let trace = |m: &EnvelopeMatrix| m.diagonal().sum::<f64>();
-    let weight = ENERGY.0 * trace(&matrix) / trace(&energy).max(f64::MIN_POSITIVE);
-    matrix.add_scaled(&energy, weight);
-    let factor = matrix.factor().map_err(|e| numerical(&e))?;
+    let balance = trace(&matrix) / trace(&energy).max(f64::MIN_POSITIVE);
+    let mut factor = Err(FitError::Numerical("no weight of the energy".into()));
+    let mut corrections = 0;
+    for (weight, most) in ENERGY {
+        let mut sum = matrix.clone();
+        sum.add_scaled(&energy, weight * balance);
+        factor = sum.factor().map_err(|e| numerical(&e));
+        corrections = most;
+        if factor.is_ok() {
+            break;
+        }
+    }
+    let factor = factor?;
+    let extent = places[last] - places[0];
     let mut control = vec![0.0; knots.control_count()];
-    for _ in 0..ENERGY.1 {
+    for _ in 0..corrections {
         let mut rhs = vec![0.0; control.len()];
+        let mut misfit = 0.0_f64;
         for (row, x) in rows.iter().zip(places) {
-            let now = dot(row.values(), &control[row.first..]);
+            let away = x - dot(row.values(), &control[row.first..]);
+            misfit = misfit.max(away.abs());
             for (k, b) in row.values().iter().enumerate() {
-                rhs[row.first + k] += b * (x - now);
+                rhs[row.first + k] += b * away;
             }
+        }
+        if misfit <= MET * extent {
+            break;
         }
         // The energy pulls back what was reached already.
         factor.solve_in_place(&mut rhs);

@@ -278,3 +278,53 @@ fn errors_point_to_their_cell() {
     }
     assert_eq!(path(&bad), "input/offsets/y");
 }
+
+/// Tables of few lines, even or not, smooth to the last digit: fitted with what
+/// they are, and no cell accused.
+#[test]
+fn small_tables_are_fitted_whatever_their_shape() {
+    let shapes: [fn(f64, f64) -> f64; 5] = [
+        |_, _| 2.0,
+        |x, z| 1.0 + x + 0.5 * z,
+        |x, z| 1.0 + x * z,
+        |x, _| 1.0 + x * x,
+        |x, z| 2.0 + (2.0 * x).sin() * (0.7 * z).cos(),
+    ];
+    let places = |n: usize, even: bool| {
+        let place = |k: usize| {
+            let t = k as f64 / (n - 1) as f64;
+            if even { t } else { t * (0.3 + 0.7 * t) }
+        };
+        (0..n).map(place).collect::<Vec<f64>>()
+    };
+    for (m, n) in [
+        (2, 2),
+        (2, 3),
+        (2, 6),
+        (3, 4),
+        (5, 5),
+        (5, 8),
+        (6, 9),
+        (7, 5),
+    ] {
+        for even in [true, false] {
+            for (k, shape) in shapes.iter().enumerate() {
+                let [along, up] = [m, n].map(|n| places(n, even));
+                let row = |x: &f64| up.iter().map(|z| Some(shape(*x, *z))).collect();
+                let outcome = done(&Request {
+                    half_breadths: along.iter().map(row).collect(),
+                    stations: along.iter().map(|x| 3.0 * x).collect(),
+                    waterlines: up.clone(),
+                    options: Options::default(),
+                });
+                let name = format!("{m} by {n}, shape {k}, even {even}");
+                assert!(outcome.slips.is_empty(), "{name}: {:?}", outcome.slips);
+                // Fewer lines cannot tell a bend from noise.
+                if m.min(n) >= 5 {
+                    let moved = outcome.surface.move_max;
+                    assert!(moved < 1e-5, "{name}: {moved}");
+                }
+            }
+        }
+    }
+}

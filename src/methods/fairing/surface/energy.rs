@@ -62,14 +62,22 @@ impl Energy {
     /// Across each knuckle line at u₀ of a net those with a ≥ 1 may change:
     /// (u − u₀)₊ᵃ vᵇ costs nothing either.
     pub(in super::super) fn free_dimension(&self, net: &Net) -> usize {
-        let free = |a: usize, b: usize| self.terms.iter().all(|(_, [k, l])| a < *k || b < *l);
         let [in_u, in_v] = net.knuckles();
         let changes = |power: usize, lines: usize| if power > 0 { 1 + lines } else { 1 };
-        (0..=net.degree())
-            .flat_map(|a| (0..=net.degree()).map(move |b| (a, b)))
-            .filter(|(a, b)| free(*a, *b))
-            .map(|(a, b)| changes(a, in_u) * changes(b, in_v))
+        self.free_monomials(net.degree())
+            .iter()
+            .map(|[a, b]| changes(*a, in_u) * changes(*b, in_v))
             .sum()
+    }
+
+    /// Powers (a, b) of the monomials uᵃvᵇ up to a degree in each that cost
+    /// nothing.
+    pub(in super::super) fn free_monomials(&self, degree: usize) -> Vec<[usize; 2]> {
+        let free = |[a, b]: [usize; 2]| self.terms.iter().all(|(_, [k, l])| a < *k || b < *l);
+        (0..=degree)
+            .flat_map(|a| (0..=degree).map(move |b| [a, b]))
+            .filter(|powers| free(*powers))
+            .collect()
     }
 
     /// The matrix P with energy `cᵀ P c` of a scalar field on the net.

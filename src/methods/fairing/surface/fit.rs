@@ -23,6 +23,8 @@ pub(in super::super) struct Fit {
     pub(in super::super) weight: Vec<f64>,
     pub(in super::super) energy: EnvelopeMatrix,
     pub(in super::super) model: Likelihood,
+    /// Monomials that the energy leaves free, where they are taken out first.
+    pub(in super::super) monomials: Vec<[usize; 2]>,
 }
 
 /// Rounds of reweighting; the scale settles in four or five.
@@ -30,6 +32,9 @@ const ROUNDS: usize = 6;
 /// Residuals of so many σ and more have no weight (Tukey's biweight; 6 keeps
 /// 98 % efficiency on clean data).
 const CUT: f64 = 6.0;
+/// Least scale, as share of the longest side: what is nearer to the sheet is on
+/// it, and judged by rounding alone every other point would be an outlier.
+const LEAST_SCALE: f64 = 1e-9;
 /// Median of |x|/σ for one, two and three normal components.
 const MEDIANS: [f64; 3] = [0.674_490, 1.177_410, 1.538_172];
 
@@ -59,10 +64,7 @@ pub(in super::super) fn robust<const D: usize>(
     let mut scale = chosen.noise;
     for _ in 0..ROUNDS {
         let residuals = residuals(net, &now, &chosen.control);
-        scale = median_scale(&residuals, D);
-        if scale <= 0.0 {
-            break;
-        }
+        scale = median_scale(&residuals, D).max(LEAST_SCALE);
         let unit = scale * MEDIANS[D.clamp(1, 3) - 1] / MEDIANS[0];
         for ((w, given), r) in now.weight.iter_mut().zip(&springs.weight).zip(&residuals) {
             let t = (r / (CUT * unit)).min(1.0);

@@ -8,6 +8,7 @@ use super::net::{Net, Sheet};
 use super::springs::{Normal, Springs, gather};
 use super::stiffness::{Chosen, Likelihood, choose, fit_with, log_pseudo_determinant};
 use super::task::{Layout, Task};
+use super::trend::Detrended;
 use crate::methods::FitError;
 use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
@@ -52,15 +53,8 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
     let free = task.freedom.iter().filter(|f| **f).count();
     let springs = springs_to(&task.points, &grid.at, &task.weight);
     let masked = free_only(&springs, task.freedom);
-    let (matrix, model) = stretched(task, (net, &masked), (order, free as f64), control)?;
-    let (mut chosen, weight, noise) = if task.robust {
-        let r = robust(net, &masked, (&matrix, model), (None, control))?;
-        (r.chosen, r.weight, r.scale)
-    } else {
-        let chosen = choose(&gather(net, &masked), &matrix, model, (None, control))?;
-        let noise = chosen.noise;
-        (chosen, springs.weight.clone(), noise)
-    };
+    let best = best(task, (net, &masked), (order, free as f64), control)?;
+    let (mut chosen, matrix, model) = (best.chosen, best.energy, best.model);
     if free < 3 {
         hold_axes(net, &springs, (&matrix, model, task.freedom), &mut chosen)?;
     }
@@ -68,70 +62,126 @@ pub(in super::super) fn fit(task: &Task, control: &dyn Control) -> Result<Fit, F
         sheet: Sheet::of_points(net, &chosen.control),
         at: grid.at,
         lambda: chosen.lambda,
-        noise,
-        weight,
+        noise: best.noise,
+        weight: best.weight,
         energy: matrix,
         model,
+        monomials: best.monomials,
     })
 }
 
-/// Steps of the stretch, up or down, and most of them.
-const STRETCH: (f64, usize) = (2.0, 7);
+/// Steps of the stretch, up or down, and most of them: terms of the energy of
+/// order 4 then differ by 8⁸, and the digits last.
+const STRETCH: (f64, usize) = (2.0, 3);
 
-/// The energy with the stretch of greatest likelihood, by walking from 1. The
-/// user's own energy is left as it is.
+/// A fit with the energy that the data like best.
+pub(in super::super) struct Best<const D: usize> {
+    pub(in super::super) chosen: Chosen<D>,
+    /// Springs' weights at the end.
+    pub(in super::super) weight: Vec<f64>,
+    /// σ a component, in the unit of the values.
+    pub(in super::super) noise: f64,
+    pub(in super::super) energy: EnvelopeMatrix,
+    pub(in super::super) model: Likelihood,
+    /// Monomials that it leaves free.
+    pub(in super::super) monomials: Vec<[usize; 2]>,
+}
+
+/// The fit with stretch and stiffness of greatest likelihood, and outliers made
+/// light of where that is asked.
 ///
 /// # Errors
 /// As [`choose`].
-pub(in super::super) fn stretched<const D: usize>(
+pub(in super::super) fn best<const D: usize>(
     task: &Task,
     (net, springs): (&Net, &Springs<D>),
     (order, components): (usize, f64),
     control: &dyn Control,
-) -> Result<(EnvelopeMatrix, Likelihood), FitError> {
-    let with = |stretch: f64| {
-        let energy = energy(task.energy, (order, stretch), net.domain());
+) -> Result<Best<D>, FitError> {
+    // No stretch changes what is free.
+    let monomials = energy(task.energy, (order, 1.0), net.domain()).free_monomials(net.degree());
+    let taken = Detrended::new(net, springs, &monomials);
+    let found = stretched(task, (net, &taken.normal), (order, components), control)?;
+    let (energy, model) = (found.energy, found.model);
+    let (mut chosen, weight, noise) = if task.robust {
+        let near = (Some(found.chosen.lambda), control);
+        let r = robust(net, &taken.left, (&energy, model), near)?;
+        (r.chosen, r.weight, r.scale)
+    } else {
+        let noise = found.chosen.noise;
+        (found.chosen, springs.weight.clone(), noise)
+    };
+    taken.restore(&mut chosen.control);
+    Ok(Best {
+        chosen,
+        weight,
+        noise,
+        energy,
+        model,
+        monomials,
+    })
+}
+
+/// An energy with its best fit.
+struct Stretched<const D: usize> {
+    chosen: Chosen<D>,
+    energy: EnvelopeMatrix,
+    model: Likelihood,
+}
+
+/// The energy with the stretch of greatest likelihood, by walking from 1. The
+/// user's own energy is left as it is.
+fn stretched<const D: usize>(
+    task: &Task,
+    (net, normal): (&Net, &Normal<D>),
+    (order, components): (usize, f64),
+    control: &dyn Control,
+) -> Result<Stretched<D>, FitError> {
+    let mass = Energy::mass().matrix(net);
+    let with = |stretch: f64, near: Option<f64>| -> Result<_, FitError> {
+        let term = energy(task.energy, (order, stretch), net.domain());
         let model = Likelihood {
-            free: energy.free_dimension(net),
+            free: term.free_dimension(net),
             components,
         };
-        (energy.matrix(net), model)
+        let energy = term.matrix(net);
+        let chosen = choose(normal, &energy, model, (near, control))?;
+        let prior = log_pseudo_determinant(&energy, &mass, model.free).unwrap_or(f64::NAN);
+        let value = chosen.criterion - components * prior;
+        let found = Stretched {
+            chosen,
+            energy,
+            model,
+        };
+        Ok((found, value))
     };
-    let (mut best, model) = with(1.0);
+    let (mut best, mut least) = with(1.0, None)?;
     if task.energy.is_some() {
-        return Ok((best, model));
+        return Ok(best);
     }
-    let mass = Energy::mass().matrix(net);
-    let normal = gather(net, springs);
-    let criterion = |matrix: &EnvelopeMatrix, near: Option<f64>| -> Result<_, FitError> {
-        let chosen = choose(&normal, matrix, model, (near, control))?;
-        let prior = log_pseudo_determinant(matrix, &mass, model.free).unwrap_or(f64::NAN);
-        Ok((chosen.criterion - components * prior, chosen.lambda))
-    };
-    let (mut least, first) = criterion(&best, None)?;
+    let first = best.chosen.lambda;
     for step in [STRETCH.0, 1.0 / STRETCH.0] {
         let mut stretch = 1.0;
         let (mut moved, mut near) = (false, first);
         for _ in 0..STRETCH.1 {
             stretch *= step;
-            let (matrix, _) = with(stretch);
-            let (value, lambda) = match criterion(&matrix, Some(near)) {
+            let (found, value) = match with(stretch, Some(near)) {
                 // So much stretch is beyond what numbers can solve.
                 Err(FitError::Numerical(_)) => break,
                 other => other?,
             };
-            near = lambda;
+            near = found.chosen.lambda;
             // Not a number where a determinant failed: no improvement.
             if value.is_nan() || value >= least {
                 break;
             }
-            (best, least, moved) = (matrix, value, true);
+            (best, least, moved) = (found, value, true);
         }
         if moved {
             break;
         }
     }
-    Ok((best, model))
+    Ok(best)
 }
 
 /// Replaces the coordinates that must not move by those that interpolate.

@@ -41,6 +41,7 @@ pub(super) mod task;
 #[cfg(test)]
 pub(super) mod tests;
 pub(super) mod tolerance;
+mod trend;
 
 pub use outcome::Outcome;
 pub use request::Request;

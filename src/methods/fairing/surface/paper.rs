@@ -98,6 +98,7 @@ pub(super) fn fit(
         lambda: best.lambda,
         energy: springs.energy,
         model: springs.model,
+        monomials: Vec::new(),
         ..start
     };
     Ok((fit, Some(bounded)))

@@ -12,6 +12,7 @@ use super::task::Task;
 use super::tolerance::{Bounded, energy_of};
 use crate::geometry::BSplineSurface;
 use crate::methods::FitError;
+use crate::methods::words::short;
 use crate::solver::Control;
 use rayon::prelude::*;
 
@@ -215,10 +216,10 @@ fn active(task: &Task, bounded: &Bounded) -> Vec<Active> {
 /// How much was moved, in words: how the verdict begins.
 pub(in super::super) fn moved(o: &Outcome) -> String {
     format!(
-        "{} points, moved by at most {:.6} (rms {:.6})",
+        "{} points, moved by at most {} (rms {})",
         o.moves.len(),
-        o.move_max,
-        o.move_rms
+        short(o.move_max),
+        short(o.move_rms)
     )
 }
 
@@ -226,25 +227,26 @@ fn summary(o: &Outcome, bounded: Option<&Bounded>) -> Vec<String> {
     let moved = moved(o);
     let verdict = match bounded {
         None => format!(
-            "{moved}; stiffness from the points' own noise, estimated as σ = {:.6}.",
-            o.noise
+            "{moved}; stiffness from the points' own noise, estimated as σ = {}.",
+            short(o.noise)
         ),
         Some(b) if b.worst <= 1.0 => format!(
             "{moved}: within tolerance; {} points hold the surface back.",
             o.active.len()
         ),
         Some(b) => format!(
-            "{moved}: outside tolerance, the worst point by a factor of {:.3}; the points' noise \
-             is about σ = {:.6}, allow more or give more control points.",
-            b.worst, o.noise
+            "{moved}: outside tolerance, the worst point by a factor of {}; the points' noise \
+             is about σ = {}, allow more or give more control points.",
+            short(b.worst),
+            short(o.noise)
         ),
     };
     let mut sentences = vec![verdict];
     if let Some(worst) = o.slips.first() {
         sentences.push(format!(
-            "{} points look like slips, the worst {:.6} off ({:.1} σ).",
+            "{} points look like slips, the worst {} off ({:.1} σ).",
             o.slips.len(),
-            worst.off,
+            short(worst.off),
             worst.sigmas
         ));
     }

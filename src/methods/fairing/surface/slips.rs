@@ -13,7 +13,9 @@ use super::outcome::Slip;
 use super::springs::{Springs, gather};
 use super::stiffness::{Factor, blend};
 use super::task::{Layout, Task};
+use super::trend::Detrended;
 use crate::methods::FitError;
+use crate::methods::fairing::student::{freedom_of_tails, two_sided};
 use crate::numerics::EnvelopeMatrix;
 use crate::solver::Control;
 use nalgebra::Vector3;
@@ -22,9 +24,9 @@ use rayon::prelude::*;
 /// Up to so many points a robust fit is made for the purpose; beyond, single
 /// points do not bend the sheet any more.
 const ROBUST_UP_TO: usize = 20_000;
-/// A slip is reported when noise would do the like in fewer than one in so
-/// many data sets.
-const CONFIDENCE: f64 = 0.5;
+/// A slip is reported when noise would not do the like in so large a share of
+/// all data sets.
+const CONFIDENCE: f64 = 0.95;
 /// Residuals below so many σ are not looked at.
 const LOOK: f64 = 3.0;
 /// Longest list.
@@ -34,13 +36,14 @@ const MOST: usize = 1000;
 const EXACT: usize = 40;
 /// Order × half bandwidth above which it is dear.
 const DEAR: usize = 400_000;
-/// Most of the data's freedom that a fit is taken to have used up, and least
-/// that a point is taken to have left: guards against division by nothing.
+/// Most of the data's freedom that a fit is taken to have used up: guards
+/// against division by nothing.
 const MOST_USED: f64 = 0.9;
-/// See [`MOST_USED`].
-const LEAST_KEPT: f64 = 1e-6;
+/// Least share of its own error that a point must keep to be judged: one that
+/// alone holds its part of the sheet leaves no residual that could tell.
+const LEAST_KEPT: f64 = 1e-3;
 /// Noise below this share of the longest side is rounding.
-const ROUNDING: f64 = 1e-7;
+const ROUNDING: f64 = 3e-7;
 
 /// A sheet that slips have not bent, with what judges them.
 struct Judge<'a> {
@@ -51,6 +54,8 @@ struct Judge<'a> {
     /// Residual across the sheet and its direction, one a point.
     residual: Vec<(f64, Vector3<f64>)>,
     sigma: f64,
+    /// Degrees of freedom of Student's t in which residuals are measured.
+    freedom: f64,
     factor: Factor,
 }
 
@@ -99,17 +104,20 @@ fn judge<'a>(
 ) -> Result<Option<Judge<'a>>, FitError> {
     let net = &fit.sheet.net;
     let bent = task.points.len() <= ROBUST_UP_TO && !task.robust;
-    let (mut springs, sheet, weight, lambda) = if !bent {
+    let (mut springs, sheet, weight, (lambda, noise)) = if !bent {
         let springs = fit.sampled(&task.points, ROBUST_UP_TO);
-        (springs, fit.sheet.clone(), fit.weight.clone(), fit.lambda)
+        let of_fit = (fit.lambda, fit.noise);
+        (springs, fit.sheet.clone(), fit.weight.clone(), of_fit)
     } else {
         let springs = springs_to(&task.points, &fit.at, &task.weight);
         let mut springs = free_only(&springs, task.freedom);
         let near = (Some(fit.lambda), control);
-        let r = robust(net, &springs, (&fit.energy, fit.model), near)?;
+        let taken = Detrended::new(net, &springs, &fit.monomials);
+        let mut r = robust(net, &taken.left, (&fit.energy, fit.model), near)?;
+        taken.restore(&mut r.chosen.control);
         let sheet = fit.with_held(&r.chosen.control, task.freedom);
         springs.weight.clone_from(&r.weight);
-        (springs, sheet, r.weight, r.chosen.lambda)
+        (springs, sheet, r.weight, (r.chosen.lambda, r.chosen.noise))
     };
     springs = free_only(&springs, task.freedom);
     let residual: Vec<(f64, Vector3<f64>)> = if bent {
@@ -131,8 +139,12 @@ fn judge<'a>(
     };
     control.check()?;
     let lengths: Vec<f64> = residual.iter().map(|r| r.0.abs()).collect();
-    let used = used(&matrix, fit, (lambda, &factor)) / lengths.len() as f64;
-    let sigma = (scale(&lengths) / (1.0 - used.clamp(0.0, MOST_USED)).sqrt()).max(ROUNDING);
+    let count = lengths.len() as f64;
+    let used = used(&matrix, fit, (lambda, &factor)) / count;
+    let kept = 1.0 - used.clamp(0.0, MOST_USED);
+    let scale = scale(&lengths);
+    let sigma = (scale.sigma / kept.sqrt()).max(noise).max(ROUNDING);
+    let freedom = (EFFICIENCY * kept * count).max(1.0).min(scale.freedom);
     Ok(Some(Judge {
         task,
         fit,
@@ -140,6 +152,7 @@ fn judge<'a>(
         weight,
         residual,
         sigma,
+        freedom,
         factor,
     }))
 }
@@ -148,10 +161,14 @@ impl Judge<'_> {
     /// The slip that point i is, given its leverage; `None` if it is none.
     fn verdict(&self, i: usize, h: f64) -> Option<Slip> {
         let (length, along) = self.residual[i];
-        let keep = (1.0 - self.weight[i] * h).max(LEAST_KEPT);
+        let keep = 1.0 - self.weight[i] * h;
+        if keep < LEAST_KEPT {
+            return None;
+        }
         let alone = length / keep;
         let sigmas = alone.abs() / (self.sigma * (1.0 + h / keep).sqrt());
-        let confidence = 1.0 - (self.fit.at.len() as f64 * two_sided(sigmas)).min(1.0);
+        let chance = self.fit.at.len() as f64 * two_sided(sigmas, self.freedom);
+        let confidence = 1.0 - chance.min(1.0);
         (confidence >= CONFIDENCE).then(|| slip(self.task, i, (along * alone, sigmas, confidence)))
     }
 }
@@ -178,21 +195,47 @@ fn weights_of(springs: &Springs<3>) -> Springs<0> {
 /// Factor between the two λ of the difference.
 const DIFFERENCE: f64 = 1.1;
 
+/// How wide the residuals are, and how long their tails.
+struct Scale {
+    sigma: f64,
+    freedom: f64,
+}
+
 /// σ that both the middle and the shoulders of the residuals agree with: the
 /// noise of real surveys has longer tails than the normal distribution, and
-/// its tails are not slips. Up to 8 % of slips do not reach the shoulder.
-fn scale(lengths: &[f64]) -> f64 {
+/// its tails are not slips. Up to 8 % of slips do not reach the shoulder. Many
+/// residuals tell how long the tails are, too.
+fn scale(lengths: &[f64]) -> Scale {
     let mut sorted = lengths.to_vec();
     if sorted.is_empty() {
-        return 0.0;
+        return Scale {
+            sigma: 0.0,
+            freedom: 1.0,
+        };
     }
     let place = (SHOULDER.0 * (sorted.len() - 1) as f64) as usize;
     let (_, shoulder, _) = sorted.select_nth_unstable_by(place, f64::total_cmp);
-    median_scale(lengths, 1).max(*shoulder / SHOULDER.1)
+    let (shoulder, middle) = (*shoulder, median_scale(lengths, 1));
+    let ratio = shoulder / (middle * MEDIAN).max(f64::MIN_POSITIVE);
+    Scale {
+        sigma: middle.max(shoulder / SHOULDER.1),
+        freedom: if lengths.len() >= MANY {
+            freedom_of_tails(ratio)
+        } else {
+            f64::INFINITY
+        },
+    }
 }
 
 /// A quantile of |x| of the standard normal distribution.
 const SHOULDER: (f64, f64) = (0.90, 1.644_854);
+/// Its median.
+const MEDIAN: f64 = 0.674_490;
+/// Residuals that tell the length of their tails.
+const MANY: usize = 500;
+/// Efficiency of σ from a quantile: so many degrees of freedom has it for one
+/// of the residuals (Huber 1981, §5.1).
+const EFFICIENCY: f64 = 0.5;
 
 fn slip(task: &Task, i: usize, (off, sigmas, confidence): (Vector3<f64>, f64, f64)) -> Slip {
     let cell = match &task.layout {
@@ -232,45 +275,4 @@ fn leverage(sheet: &Sheet, at: [f64; 2], factor: &Factor) -> f64 {
     let mut solved = row.clone();
     factor.solve_in_place(&mut solved);
     row.iter().zip(&solved).map(|(a, b)| a * b).sum()
-}
-
-/// Probability that a standard normal variable is farther from 0 than z
-/// (Abramowitz & Stegun 7.1.26 below 3, the continued fraction 7.1.14 above).
-fn two_sided(z: f64) -> f64 {
-    let x = z / std::f64::consts::SQRT_2;
-    if z < 3.0 {
-        let t = 1.0 / (1.0 + 0.327_591_1 * x);
-        let poly = t
-            * (0.254_829_592
-                + t * (-0.284_496_736
-                    + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))));
-        return poly * (-x * x).exp();
-    }
-    let mut tail = x;
-    for k in (1..=40).rev() {
-        tail = x + 0.5 * f64::from(k) / tail;
-    }
-    (-x * x).exp() / (tail * std::f64::consts::PI.sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::two_sided;
-
-    /// Tables of the normal distribution.
-    #[test]
-    fn tails() {
-        for (z, p) in [
-            (1.0, 0.317_310_5),
-            (1.96, 0.049_995_8),
-            (3.0, 2.699_796e-3),
-            (5.0, 5.733_031e-7),
-        ] {
-            assert!(
-                (two_sided(z) / p - 1.0).abs() < 1e-5,
-                "{z}: {}",
-                two_sided(z)
-            );
-        }
-    }
 }

@@ -31,9 +31,14 @@ pub(in super::super) struct Normal<const D: usize> {
     pub(in super::super) rhs: Vec<[f64; D]>,
     /// `Σ w |q|²` over all fields.
     pub(in super::super) square: f64,
+    /// What of it cannot be told from zero.
+    pub(in super::super) rounding: f64,
     /// Points that count.
     pub(in super::super) points: usize,
 }
+
+/// Share of the data's own square below which a residual is rounding.
+const ROUNDING: f64 = 1e-15;
 
 /// Points of one chunk: enough to be worth a task, few enough to share.
 const CHUNK: usize = 4096;
@@ -123,11 +128,13 @@ pub(in super::super) fn gather_cells<const D: usize>(
         matrix: EnvelopeMatrix::banded(net.len(), net.half_bandwidth()),
         rhs: vec![[0.0; D]; net.len()],
         square: 0.0,
+        rounding: 0.0,
         points: 0,
     };
     for b in &blocks {
         scatter(net, b, &mut normal);
     }
+    normal.rounding = ROUNDING * normal.square;
     normal
 }
 

@@ -48,8 +48,6 @@ const WALK: f64 = 1.0;
 const PARABOLAS: usize = 3;
 /// Decades that need not be told apart.
 const CLOSE: f64 = 0.03;
-/// Share of the data's own square below which a residual is rounding.
-const ROUNDING: f64 = 1e-15;
 
 /// A Cholesky factor in the form that suits its bandwidth.
 #[derive(Debug, Clone)]
@@ -134,7 +132,7 @@ pub(in super::super) fn fit_with<const D: usize>(
         .flat_map(|(c, f)| c.iter().zip(f))
         .map(|(c, f)| c * f)
         .sum();
-    let left = (normal.square - explained).max(ROUNDING * normal.square + f64::MIN_POSITIVE);
+    let left = (normal.square - explained).max(normal.rounding + f64::MIN_POSITIVE);
     let order = normal.rhs.len();
     let degrees = normal.points.saturating_sub(model.free).max(1) as f64;
     let determinant = factor.log_determinant();
@@ -191,9 +189,14 @@ pub(in super::super) fn choose<const D: usize>(
         }
     }
     search.parabolas(at)?;
-    search
-        .best
-        .ok_or_else(|| FitError::Numerical("no spring stiffness gives a solvable system".into()))
+    match (search.best, near) {
+        (Some(best), _) => Ok(best),
+        // What was solvable at another level or with other weights is not here.
+        (None, Some(_)) => choose(normal, energy, model, (None, control)),
+        (None, None) => Err(FitError::Numerical(
+            "no spring stiffness gives a solvable system".into(),
+        )),
+    }
 }
 
 /// Order × half bandwidth² up to which a few more factors cost nothing beside

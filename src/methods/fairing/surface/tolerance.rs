@@ -50,6 +50,11 @@ const SETTLED: f64 = 1e-3;
 /// Strips are a little narrower than the tolerance, for the rounding of
 /// whoever checks.
 const ROOM: f64 = 1e-6;
+/// Distances up to so many tolerances are mended by narrower strips; beyond,
+/// the step is halved, and at most so often.
+const MILD: f64 = 2.0;
+/// See [`MILD`].
+const MOST_HALVINGS: usize = 8;
 /// Gauss–Newton steps for feet: they must be the true ones here.
 const FEET: Effort = Effort::exact(12);
 
@@ -69,8 +74,16 @@ pub(in super::super) fn within(
     let mut at = start.1.to_vec();
     let mut members = Vec::new();
     let mut narrow = vec![1.0 - ROOM; at.len()];
-    let mut best: Option<(f64, Bounded)> = None;
-    let mut before = f64::INFINITY;
+    let ratio = ratios(&sheet, &mut at, bounds, control)?;
+    let mut worst = ratio.iter().copied().fold(0.0, f64::max);
+    let first = Bounded {
+        sheet: sheet.clone(),
+        at: at.clone(),
+        duals: vec![0.0; at.len()],
+        worst,
+    };
+    let mut before = energy_of(&sheet, energy, bounds.freedom());
+    let mut best = (before, first);
     for round in 0..ROUNDS {
         control.progress(
             "within tolerance",
@@ -85,9 +98,9 @@ pub(in super::super) fn within(
         let Some((moved, duals)) = solved else {
             break;
         };
-        sheet = moved;
-        let ratio = ratios(&sheet, &mut at, bounds, control)?;
-        let worst = ratio.iter().copied().fold(0.0, f64::max);
+        let (next, places, ratio) = towards((&sheet, &at), moved, (bounds, worst), control)?;
+        (sheet, at) = (next, places);
+        worst = ratio.iter().copied().fold(0.0, f64::max);
         for (n, r) in narrow.iter_mut().zip(&ratio) {
             *n *= (1.0 / r).min(1.0);
         }
@@ -98,15 +111,40 @@ pub(in super::super) fn within(
             duals,
             worst,
         };
-        if best.as_ref().is_none_or(|b| is_better((value, worst), b)) {
-            best = Some((value, trial));
+        if is_better((value, worst), &best) {
+            best = (value, trial);
         }
         if worst <= 1.0 && (before - value).abs() <= SETTLED * value {
             break;
         }
         before = value;
     }
-    Ok(best.map_or_else(|| unmet(start, bounds), |(_, b)| b))
+    Ok(best.1)
+}
+
+/// A step to the programme's sheet, as far as its strips speak for it: they are
+/// those of the feet and normals of the sheet before, and a sheet that moves
+/// far turns away from them.
+fn towards(
+    (sheet, at): (&Sheet, &[[f64; 2]]),
+    goal: Sheet,
+    (bounds, before): (Bounds, f64),
+    control: &dyn Control,
+) -> Result<(Sheet, Vec<[f64; 2]>, Vec<f64>), FitError> {
+    let mut next = goal;
+    let mut halved = 0;
+    loop {
+        let mut places = at.to_vec();
+        let ratio = ratios(&next, &mut places, bounds, control)?;
+        let worst = ratio.iter().copied().fold(0.0, f64::max);
+        if worst <= MILD.max(before) || halved == MOST_HALVINGS {
+            return Ok((next, places, ratio));
+        }
+        for (c, from) in next.control.iter_mut().zip(&sheet.control) {
+            *c = 0.5 * (*c + from);
+        }
+        halved += 1;
+    }
 }
 
 /// Distances in tolerances, at new feet where points slide.
@@ -138,17 +176,6 @@ fn is_better((value, worst): (f64, f64), (energy, other): &(f64, Bounded)) -> bo
         value < *energy
     } else {
         worst < other.worst
-    }
-}
-
-/// The start itself with its overrun, where no programme could be solved.
-fn unmet((sheet, at): (&Sheet, &[[f64; 2]]), bounds: Bounds) -> Bounded {
-    let ratio = |i: usize| (bounds.points[i] - sheet.point(at[i])).norm() / bounds.tolerance[i];
-    Bounded {
-        sheet: sheet.clone(),
-        at: at.to_vec(),
-        duals: vec![0.0; at.len()],
-        worst: (0..at.len()).map(ratio).fold(0.0, f64::max),
     }
 }
 

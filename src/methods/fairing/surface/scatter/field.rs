@@ -219,6 +219,7 @@ fn finish(
         weight: weight[..points].to_vec(),
         energy,
         model,
+        monomials: Vec::new(),
     })
 }
 
