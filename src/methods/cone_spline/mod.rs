@@ -56,6 +56,7 @@ mod floor;
 mod ladder;
 mod minimax;
 pub mod outcome;
+mod paper;
 mod problem;
 mod report;
 pub mod request;
@@ -70,7 +71,7 @@ pub use outcome::Outcome;
 pub use request::Request;
 
 use super::{Control, FitError, Issue};
-use request::{Goal, MOST_PIECES};
+use request::{Goal, MOST_PIECES, Solver};
 use target::Target;
 
 /// Fits patches to a strip.
@@ -86,7 +87,12 @@ pub fn fit(request: &Request, control: &dyn Control) -> Result<Outcome, FitError
         return Err(FitError::Invalid(issues));
     }
     let target = Target::of(request, control)?;
-    let outcome = fit::fit_target(request, &target, control)?;
+    let outcome = match (request.options.solver, request.options.goal) {
+        (Solver::Paper, Goal::Pieces(pieces)) => {
+            paper::fit_target(request, pieces, &target, control)?
+        }
+        _ => fit::fit_target(request, &target, control)?,
+    };
     control.progress("done", 100.0);
     Ok(outcome)
 }
@@ -147,6 +153,9 @@ fn check_options(request: &Request) -> Vec<Issue> {
             "No kind of patch is allowed.".to_owned(),
             "Allow cones, cylinders or planes.",
         ));
+    }
+    if options.solver == Solver::Paper {
+        issues.extend(paper::check_options(options));
     }
     issues
 }

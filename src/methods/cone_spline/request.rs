@@ -52,6 +52,15 @@ pub enum Norm {
     Minimax,
 }
 
+/// Which algorithm fits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Solver {
+    /// This crate's own.
+    Own,
+    /// The paper's, for comparison; needs [`Goal::Pieces`].
+    Paper,
+}
+
 /// Which kinds of patches may be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Classes {
@@ -94,6 +103,8 @@ pub struct Options {
     pub thickness: Option<f64>,
     /// Least bend radius the yard can roll, > 0.
     pub min_bend_radius: Option<f64>,
+    /// Which algorithm.
+    pub solver: Solver,
 }
 
 impl Default for Options {
@@ -107,6 +118,7 @@ impl Default for Options {
             cut: None,
             thickness: None,
             min_bend_radius: None,
+            solver: Solver::Own,
         }
     }
 }

@@ -74,6 +74,11 @@ impl Strip {
         self.sample_homes.len() < self.homes.len()
     }
 
+    /// A point of the request in the unit of the fit.
+    pub(super) fn in_unit(&self, point: &Point3<f64>) -> Point3<f64> {
+        Point3::from((point.coords - self.centre) * self.scale)
+    }
+
     /// A chain in the unit of the request.
     pub(super) fn restored(&self, chain: &Chain) -> Chain {
         chain.scaled(1.0 / self.scale, &self.centre)
