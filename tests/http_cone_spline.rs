@@ -142,6 +142,39 @@ async fn a_bent_plate_is_a_plane_a_cylinder_and_a_plane() {
 }
 
 #[tokio::test]
+async fn the_papers_solver_gives_the_same_sheets_less_well() {
+    let service = real_service().await;
+    let options = |solver: &str| json!({"pieces": 5, "solver": solver, "thickness": 0.008});
+    let asked = |solver: &str| changed("shoulder", |j| j["options"] = options(solver));
+    let (place, paper) = result_of(&service, &asked("paper")).await;
+    let (_, own) = result_of(&service, &asked("own")).await;
+    let (specific, figures) = (&paper["method_specific"], &paper["diagnostics"]);
+    assert_eq!(specific["options"]["solver"], "paper");
+    assert_eq!(figures["pieces_from"], "asked");
+    let size = figures["model_size"].as_f64().unwrap();
+    let (sheets, rulings) = (list(&specific["patches"]), list(&specific["rulings"]));
+    assert_eq!((sheets.len(), rulings.len()), (5, 6));
+    for (i, sheet) in sheets.iter().enumerate() {
+        for ruling in &rulings[i..=i + 1] {
+            let off = off_the_patch(sheet, ruling);
+            assert!(off <= 1e-9 * size, "patch {i}: {off}");
+        }
+        assert!(sheet["bend_strain_percent"].as_f64().unwrap() > 0.0);
+    }
+    assert!(figures["join_angle_deg"].as_f64().unwrap().to_radians() <= 1e-10);
+    assert!(figures["join_gap"].as_f64().unwrap() <= 1e-10 * size);
+    let far =
+        |result: &Value, way: &str| result["diagnostics"][way]["max"].as_f64().unwrap() / size;
+    for way in ["to_surface", "to_mesh"] {
+        let (own, paper) = (far(&own, way), far(&paper, way));
+        assert!(own < paper && paper < 0.02, "{way}: {own} {paper}");
+    }
+    let step = service.get(&format!("{place}/result.step")).await;
+    let step = String::from_utf8(step.body.to_vec()).unwrap();
+    assert_eq!(step.matches("ADVANCED_FACE").count(), 5);
+}
+
+#[tokio::test]
 async fn every_file_can_be_had() {
     let service = real_service().await;
     let (place, result) = result_of(&service, &example("shoulder")).await;
@@ -196,6 +229,23 @@ async fn what_is_wrong_is_named_by_its_place() {
             shoulder(|j| j["options"] = json!({"pieces": 61})),
             "/options/pieces",
             "out-of-range",
+        ),
+        (
+            shoulder(|j| j["options"]["solver"] = json!("paper")),
+            "/options/tolerance",
+            "unexpected",
+        ),
+        (
+            shoulder(|j| j["options"] = json!({"solver": "paper"})),
+            "/options/pieces",
+            "missing",
+        ),
+        (
+            shoulder(|j| {
+                j["options"] = json!({"solver": "paper", "pieces": 4, "classes": ["cone"]})
+            }),
+            "/options/classes",
+            "unexpected",
         ),
         (
             shoulder(|j| j["options"]["tolerance"] = json!(0)),

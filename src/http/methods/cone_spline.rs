@@ -25,7 +25,7 @@ const WORDS: Words = Words {
         lines. A tolerance that no number of patches reaches is told, with the one that can be \
         reached. Rings are cut; creases, holes, Möbius bands and several pieces are refused with \
         their place.",
-    source: "After Zhang, Bo, Zheng & Zhang; Chen, Lee, Leopoldseder, Pottmann, Randrup & Wallner \
+    source: "After Zhang, Bo, Zheng & Zhang, whose method is the solver `paper`; Chen, Lee, Leopoldseder, Pottmann, Randrup & Wallner \
         1999.",
     lengths: &["tolerance", "thickness", "min_bend_radius"],
     gifts: &[

@@ -73,7 +73,7 @@ pub fn fit_target(
 
 /// Whether neighbours meet where their sheets say: not where a ruling passes
 /// an apex.
-fn can_be_rolled(outcome: &Outcome) -> bool {
+pub(super) fn can_be_rolled(outcome: &Outcome) -> bool {
     /// Far above rounding, far below what a yard sees.
     const MEETS: f64 = 1e-6;
     let meets = |j: &super::outcome::Join| {
@@ -83,7 +83,10 @@ fn can_be_rolled(outcome: &Outcome) -> bool {
 }
 
 /// What is said when nothing that could be rolled was found.
-fn doubtful(outcome: Result<Outcome, FitError>, patches: usize) -> Result<Outcome, FitError> {
+pub(super) fn doubtful(
+    outcome: Result<Outcome, FitError>,
+    patches: usize,
+) -> Result<Outcome, FitError> {
     match outcome {
         Ok(mut outcome) => {
             outcome.within_limits = false;

@@ -12,7 +12,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 const ACROSS: usize = 7;
 
 /// A strip as a grid of triangles; rows run from side 0 to side 1.
-fn target(rows: &[Vec<Point3<f64>>]) -> Target {
+pub(super) fn target(rows: &[Vec<Point3<f64>>]) -> Target {
     let points: Vec<Point3<f64>> = rows.concat();
     let mut triangles = Vec::new();
     for i in 0..rows.len() - 1 {
@@ -46,7 +46,11 @@ fn target(rows: &[Vec<Point3<f64>>]) -> Target {
 }
 
 /// Rows of a strip that is carried with strains given by arc length.
-fn carried(strain: impl Fn(f64) -> (f64, f64), length: f64, width: f64) -> Vec<Vec<Point3<f64>>> {
+pub(super) fn carried(
+    strain: impl Fn(f64) -> (f64, f64),
+    length: f64,
+    width: f64,
+) -> Vec<Vec<Point3<f64>>> {
     const ROWS: usize = 120;
     const FINE: usize = 20;
     let mut frame = Frame {
@@ -68,7 +72,7 @@ fn carried(strain: impl Fn(f64) -> (f64, f64), length: f64, width: f64) -> Vec<V
 }
 
 /// Constant strains one after the other, with their lengths.
-fn pieces(list: &'static [(f64, f64, f64)]) -> impl Fn(f64) -> (f64, f64) {
+pub(super) fn pieces(list: &'static [(f64, f64, f64)]) -> impl Fn(f64) -> (f64, f64) {
     move |s| {
         let mut end = 0.0;
         for (g, k, length) in list {

@@ -33,6 +33,8 @@
 //!   interval finds the best division for every number of patches at once.
 //! * The number of patches follows from a tolerance, or from the noise.
 //!
+//! The paper's own way is kept (`paper`) to be measured against.
+//!
 //! # Limits
 //! * A strip whose rulings are found badly (a helix of several turns) may lead
 //!   to no chain that can be rolled, which is then said.

@@ -86,6 +86,9 @@ pub struct ConeSplineOptions {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(exclusive_minimum = 0)]
     pub min_bend_radius: Option<f64>,
+    /// Which algorithm fits. The paper's needs `pieces` and knows neither
+    /// `norm`, `classes`, `simplify` nor `robust`.
+    pub solver: ConeSplineSolver,
 }
 
 impl Default for ConeSplineOptions {
@@ -100,8 +103,21 @@ impl Default for ConeSplineOptions {
             cut: None,
             thickness: None,
             min_bend_radius: None,
+            solver: ConeSplineSolver::Own,
         }
     }
+}
+
+/// Which algorithm fits: `own`, this service's, or `paper`, the clustered axes
+/// and stitched cones of Zhang, Bo, Zheng & Zhang, for comparison only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ConeSplineSolver {
+    /// This service's own.
+    #[default]
+    Own,
+    /// The paper's.
+    Paper,
 }
 
 /// What is made small.

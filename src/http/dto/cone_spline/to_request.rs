@@ -2,10 +2,10 @@
 
 use super::super::curves::check_points;
 use super::super::job::Units;
-use super::{ConeSplineInput, ConeSplineOptions, KindWord, NormOption};
+use super::{ConeSplineInput, ConeSplineOptions, ConeSplineSolver, KindWord, NormOption};
 use crate::http::problem::FieldError;
 use crate::methods::cone_spline::Request;
-use crate::methods::cone_spline::request::{Classes, Goal, Input, Norm, Options};
+use crate::methods::cone_spline::request::{Classes, Goal, Input, Norm, Options, Solver};
 
 /// The name of a strip that has none.
 const UNNAMED: &str = "strip";
@@ -110,5 +110,9 @@ fn asked(o: &ConeSplineOptions, units: Units, faults: &mut Vec<FieldError>) -> O
         cut: o.cut.map(Into::into),
         thickness: o.thickness,
         min_bend_radius: o.min_bend_radius,
+        solver: match o.solver {
+            ConeSplineSolver::Own => Solver::Own,
+            ConeSplineSolver::Paper => Solver::Paper,
+        },
     }
 }

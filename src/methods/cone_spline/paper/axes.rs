@@ -47,7 +47,11 @@ fn centre(jet: &Jet) -> Point3<f64> {
     let Some(normal) = jet.u.cross(&jet.v).try_normalize(0.0) else {
         return jet.point;
     };
-    let [e, f, g] = [jet.u.norm_squared(), jet.u.dot(&jet.v), jet.v.norm_squared()];
+    let [e, f, g] = [
+        jet.u.norm_squared(),
+        jet.u.dot(&jet.v),
+        jet.v.norm_squared(),
+    ];
     let [l, m] = [jet.uu.dot(&normal), jet.uv.dot(&normal)];
     // With the second form [l, m; m, 0]: mean and Gauss curvature.
     let area = e * g - f * f;

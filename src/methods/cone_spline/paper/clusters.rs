@@ -55,7 +55,11 @@ fn features(axes: &[Axis]) -> Vec<Feature> {
 /// The feature with the sign of its axis that is nearer to another.
 fn turned(feature: &Feature, to: &Feature) -> Feature {
     let line = |f: &Feature| f.fixed_rows::<6>(0).into_owned();
-    let sign = if line(feature).dot(&line(to)) < 0.0 { -1.0 } else { 1.0 };
+    let sign = if line(feature).dot(&line(to)) < 0.0 {
+        -1.0
+    } else {
+        1.0
+    };
     let mut turned = *feature;
     turned.fixed_rows_mut::<6>(0).scale_mut(sign);
     turned

@@ -34,13 +34,24 @@ impl Cone {
         let [direction, moment] = [direction / size, moment / size];
         let rulings: Vec<[Point3<f64>; 2]> = axes.iter().map(|a| surface.ruling(a.u)).collect();
         let count = rulings.len() as f64;
-        let lines = || rulings.iter().map(|[a, b]| (*a, Unit::new_normalize(a - b).into_inner()));
+        let lines = || {
+            rulings
+                .iter()
+                .map(|[a, b]| (*a, Unit::new_normalize(a - b).into_inner()))
+        };
         let mean = lines().map(|(_, l)| l).sum::<Vector3<f64>>();
         let along = direction * 1.0_f64.copysign(direction.dot(&mean));
-        let middle = rulings.iter().map(|[a, b]| (a.coords + b.coords) * 0.5).sum::<Vector3<f64>>() / count;
+        let middle = rulings
+            .iter()
+            .map(|[a, b]| (a.coords + b.coords) * 0.5)
+            .sum::<Vector3<f64>>()
+            / count;
         let foot = direction.cross(&moment);
         let point = Point3::from(foot + along * (middle - foot).dot(&along));
-        let distance = lines().map(|(p, l)| (point - p).cross(&l).norm()).sum::<f64>() / count;
+        let distance = lines()
+            .map(|(p, l)| (point - p).cross(&l).norm())
+            .sum::<f64>()
+            / count;
         // The rulings' slope against the axis, with the sign of the side on
         // which they come nearer to it.
         let slope = |(p, l): (Point3<f64>, Vector3<f64>)| {

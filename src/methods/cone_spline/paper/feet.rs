@@ -31,7 +31,9 @@ impl Grid {
         let count = LOOKED_AT * regions;
         let at = |i: usize| i as f64 / count as f64;
         Grid {
-            rulings: (0..=count).map(|i| (at(i), surface.ruling(at(i)))).collect(),
+            rulings: (0..=count)
+                .map(|i| (at(i), surface.ruling(at(i))))
+                .collect(),
         }
     }
 
@@ -42,14 +44,21 @@ impl Grid {
             let apart = (ruling[0] + (ruling[1] - ruling[0]) * v - point).norm_squared();
             (apart, [*u, v])
         };
-        let nearest = self.rulings.iter().map(foot).min_by(|a, b| a.0.total_cmp(&b.0));
+        let nearest = self
+            .rulings
+            .iter()
+            .map(foot)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
         nearest.map_or([0.0; 2], |(_, place)| place)
     }
 
     /// u of the nearest end on a side.
     pub(super) fn on_side(&self, side: usize, point: &Point3<f64>) -> f64 {
         let apart = |(_, ends): &&(f64, [Point3<f64>; 2])| (ends[side] - point).norm_squared();
-        let nearest = self.rulings.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let nearest = self
+            .rulings
+            .iter()
+            .min_by(|a, b| apart(a).total_cmp(&apart(b)));
         nearest.map_or(0.0, |(u, _)| *u)
     }
 }
@@ -62,8 +71,16 @@ pub(super) fn on_surface(surface: &Ruled, point: &Point3<f64>, near: [f64; 2]) -
         let jet = surface.jet(u, v);
         let off = point - jet.point;
         let slope = [off.dot(&jet.u), off.dot(&jet.v)];
-        let gauss = [jet.u.norm_squared(), jet.u.dot(&jet.v), jet.v.norm_squared()];
-        let newton = [gauss[0] - off.dot(&jet.uu), gauss[1] - off.dot(&jet.uv), gauss[2]];
+        let gauss = [
+            jet.u.norm_squared(),
+            jet.u.dot(&jet.v),
+            jet.v.norm_squared(),
+        ];
+        let newton = [
+            gauss[0] - off.dot(&jet.uu),
+            gauss[1] - off.dot(&jet.uv),
+            gauss[2],
+        ];
         let determinant = |h: &[f64; 3]| h[0] * h[2] - h[1] * h[1];
         /// Share of Gauss and Newton's determinant that Newton's must have.
         const SAFE: f64 = 0.1;

@@ -3,7 +3,8 @@
 //! against.
 //!
 //! 1. A developable B-spline ruled surface near the strip ([`ruled`]): through
-//!    the rulings of the fine chain that is the floor of the own solver too.
+//!    the rulings of a fine chain, the smoothest that is about as good as the
+//!    own solver's floor (the paper takes it from elsewhere).
 //! 2. The axes of the osculating cones of its rulings ([`axes`]), gathered by
 //!    K-means into as many regions as asked ([`clusters`]), each with a cone
 //!    ([`cone`]).
@@ -37,6 +38,7 @@ mod tests;
 
 use super::distances;
 use super::engine::{Effort, Fitted};
+use super::fit::{can_be_rolled, doubtful};
 use super::floor::floor;
 use super::outcome::{ErrorPoint, Floor, Outcome, Report};
 use super::problem::Freedom;
@@ -46,6 +48,7 @@ use super::sheet;
 use super::strip::{Strip, oriented};
 use super::target::Target;
 use crate::methods::{Control, FitError, Issue};
+use crate::solver::Stop;
 use cone::Cone;
 use nalgebra::Point3;
 use objective::Data;
@@ -54,46 +57,64 @@ use ruled::Ruled;
 
 /// Rulings whose axes are looked at, for each region.
 const AXES: usize = 40;
+/// Pulls that make the fine chain smooth (see [`floor`]), the strongest first.
+const PULLS: [f64; 5] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+/// The smooth chain's root mean square against the fine one's, and what may be
+/// added in the unit of the fit: axes follow from second derivatives, and a
+/// chain that follows noise has none to rely on.
+const WORSE: f64 = 1.1;
+const SMALL: f64 = 1e-4;
 /// Points of the strip's outline at most, each side.
 const MOST_ON_A_SIDE: usize = 1000;
 
 /// What the paper's method cannot do of what is asked.
 pub(super) fn check_options(options: &Options) -> Vec<Issue> {
-    let issue = |name: &str, message: &str, hint: &str| Issue {
+    let issue = |name: &str, code: &'static str, message: &str, hint: &str| Issue {
         path: vec!["options".to_owned(), name.to_owned()],
-        code: "not-in-the-paper",
+        code,
         message: message.to_owned(),
         hint: Some(hint.to_owned()),
     };
-    let own = "Take the solver \"own\".";
     let mut issues = Vec::new();
-    let count = "The paper's solver needs the number of patches.";
+    let count = "the paper's solver needs the number of patches";
     match options.goal {
         Goal::Pieces(_) => {}
-        Goal::Tolerance(_) => issues.push(issue(
-            "tolerance",
-            count,
-            "Give \"pieces\" instead, or take the solver \"own\".",
-        )),
-        Goal::Noise => issues.push(issue(
-            "pieces",
-            count,
-            "Give \"pieces\", or take the solver \"own\".",
-        )),
+        Goal::Tolerance(_) => {
+            let hint = "give \"pieces\" instead, or take the solver \"own\"";
+            issues.push(issue("tolerance", "unexpected", count, hint));
+        }
+        Goal::Noise => {
+            let hint = "give \"pieces\", or take the solver \"own\"";
+            issues.push(issue("pieces", "missing", count, hint));
+        }
     }
-    if options.norm == Some(Norm::Minimax) {
-        issues.push(issue("norm", "The paper's solver minimises squares.", own));
-    }
-    if options.classes != Classes::default() {
-        let message = "The paper's solver makes what it finds, mostly cones.";
-        issues.push(issue("classes", message, own));
-    }
-    if options.simplify {
-        issues.push(issue("simplify", "The paper's solver does not simplify.", own));
-    }
-    if options.robust {
-        issues.push(issue("robust", "The paper's solver counts every vertex.", own));
-    }
+    let refused = [
+        (
+            options.norm == Some(Norm::Minimax),
+            "norm",
+            "the paper's solver minimises squares",
+        ),
+        (
+            options.classes != Classes::default(),
+            "classes",
+            "the paper's solver cannot choose the kinds of its patches",
+        ),
+        (
+            options.simplify,
+            "simplify",
+            "the paper's solver does not simplify",
+        ),
+        (
+            options.robust,
+            "robust",
+            "the paper's solver counts every vertex in full",
+        ),
+    ];
+    let hint = "leave it out, or take the solver \"own\"";
+    issues.extend(
+        (refused.iter().filter(|(asked, ..)| *asked))
+            .map(|(_, name, message)| issue(name, "unexpected", message, hint)),
+    );
     issues
 }
 
@@ -115,7 +136,8 @@ pub(super) fn fit_target(
     control.progress("developing", 10.0);
     let fine = floor(&strip.sample, &strip.start, &strip.sample_homes, control)?;
     let unit = in_unit(&target, &strip);
-    let surface = Ruled::through(&rulings(&target, &strip, &fine)).map_err(failed)?;
+    let smooth = smoothest(&strip, &fine, control)?;
+    let surface = Ruled::through(&rulings(&target, &strip, &smooth)).map_err(failed)?;
     control.progress("dividing", 20.0);
     let axes = axes::along(&surface, AXES * pieces);
     let starts = clusters::regions(&axes, pieces);
@@ -136,12 +158,9 @@ pub(super) fn fit_target(
     };
     let found = optimise((&surface, &cones), &breaks, data, control)?;
     control.progress("measuring", 90.0);
-    let chain = stitch::stitched(&found.surface, &found.cones, &breaks).ok_or_else(|| {
-        FitError::Numerical(format!(
-            "the paper's solver found no {pieces} cones that make a strip; ask for another number, \
-             or take the solver \"own\""
-        ))
-    })?;
+    let Some(chain) = stitch::stitched(&found.surface, &found.cones, &breaks) else {
+        return doubtful(Err(FitError::Numerical(String::new())), pieces);
+    };
     let rigid = Freedom {
         strains: vec![[false; 2]; pieces],
         joints: false,
@@ -151,7 +170,7 @@ pub(super) fn fit_target(
     let length = 1.0 / strip.scale;
     let figures = |f: &Fitted| strip.sample.figures(&f.distances).map(|d| d * length);
     let ([max, mean, rms], [least, middle, root]) = (figures(&moved), figures(&fine));
-    let mut outcome = report::outcome(
+    let outcome = report::outcome(
         request,
         &target,
         report::Fitted {
@@ -178,7 +197,11 @@ pub(super) fn fit_target(
                 termination: found.termination,
             },
         },
-    )?;
+    );
+    let mut outcome = match outcome {
+        Ok(outcome) if can_be_rolled(&outcome) => outcome,
+        other => doubtful(other, pieces)?,
+    };
     if !found.is_conical() {
         outcome.warnings.push(format!(
             "The paper's solver ended with {:.0e} left of its constraints, not below 1e-5: its \
@@ -187,6 +210,26 @@ pub(super) fn fit_target(
         ));
     }
     Ok(outcome)
+}
+
+/// The fine chain as smooth as may be without becoming worse than it is.
+fn smoothest(strip: &Strip, fine: &Fitted, control: &dyn Control) -> Result<Fitted, Stop> {
+    let freedom = Freedom {
+        joints: false,
+        ..Freedom::full(fine.chain.len())
+    };
+    let enough = WORSE * fine.rms(&strip.sample) + SMALL;
+    for smoothing in PULLS {
+        let effort = Effort {
+            smoothing,
+            ..Effort::FULL
+        };
+        let smooth = fine.relaxed(&strip.sample, &freedom, effort, control)?;
+        if smooth.worth(&strip.sample) <= enough {
+            return Ok(smooth);
+        }
+    }
+    Ok(fine.clone())
 }
 
 /// The outline of a target in the unit of the fit.
@@ -198,7 +241,10 @@ struct InUnit {
 fn in_unit(target: &Target, strip: &Strip) -> InUnit {
     let unit = |list: &Vec<Point3<f64>>| {
         let step = list.len().div_ceil(MOST_ON_A_SIDE).max(1);
-        list.iter().step_by(step).map(|p| strip.in_unit(p)).collect()
+        list.iter()
+            .step_by(step)
+            .map(|p| strip.in_unit(p))
+            .collect()
     };
     InUnit {
         sides: target.sides.each_ref().map(unit),

@@ -134,7 +134,10 @@ impl Objective {
 
     /// The cones of unknowns.
     pub(super) fn cones(&self, x: &[f64]) -> Vec<Cone> {
-        x[self.first_cone()..].chunks(NUMBERS).map(Cone::of).collect()
+        x[self.first_cone()..]
+            .chunks(NUMBERS)
+            .map(Cone::of)
+            .collect()
     }
 
     /// Where the cones begin among the unknowns.
@@ -172,7 +175,12 @@ impl Objective {
     }
 
     /// Both ends of a ruling, or of its derivative.
-    fn ends<const ROWS: usize>(&self, x: &[f64], basis: &BasisJet<ROWS>, order: usize) -> [Vector3<f64>; 2] {
+    fn ends<const ROWS: usize>(
+        &self,
+        x: &[f64],
+        basis: &BasisJet<ROWS>,
+        order: usize,
+    ) -> [Vector3<f64>; 2] {
         let n = self.knots.control_count();
         [0, n].map(|side| {
             let values = basis.derivative(order).iter().enumerate();
@@ -295,7 +303,10 @@ fn first_feet(surface: &Ruled, regions: usize, data: Data<'_>) -> Vec<Datum> {
         .collect();
     for (k, side) in data.sides.into_iter().enumerate() {
         let place = |p: &Point3<f64>| [grid.on_side(k, p), k as f64];
-        all.extend(side.iter().map(|p| datum(p, BORDER, Held::Side(k), place(p))));
+        all.extend(
+            side.iter()
+                .map(|p| datum(p, BORDER, Held::Side(k), place(p))),
+        );
     }
     for (u, end) in [0.0, 1.0].into_iter().zip(data.ends) {
         all.extend(end.iter().map(|p| datum(p, BORDER, Held::End, [u, 0.5])));

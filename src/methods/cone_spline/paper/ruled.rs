@@ -41,7 +41,10 @@ impl Ruled {
     pub(super) fn through(rulings: &[[Point3<f64>; 2]]) -> Result<Ruled, SplineError> {
         let mut parameters = vec![0.0];
         for pair in rulings.windows(2) {
-            let [a, b] = [center(&pair[0][0], &pair[0][1]), center(&pair[1][0], &pair[1][1])];
+            let [a, b] = [
+                center(&pair[0][0], &pair[0][1]),
+                center(&pair[1][0], &pair[1][1]),
+            ];
             parameters.push(parameters[parameters.len() - 1] + (b - a).norm());
         }
         let length = parameters[parameters.len() - 1];
@@ -114,7 +117,10 @@ fn nearest_curve(
     let mut right = DMatrix::<f64>::zeros(n, 3);
     /// The ends count so much: they are kept.
     const END: f64 = 1e6;
-    let weighted = places.iter().map(|u| (*u, 1.0)).chain([(0.0, END), (1.0, END)]);
+    let weighted = places
+        .iter()
+        .map(|u| (*u, 1.0))
+        .chain([(0.0, END), (1.0, END)]);
     for (u, weight) in weighted {
         let basis = basis_jet::<1>(knots, u);
         let point = curve.point(u);

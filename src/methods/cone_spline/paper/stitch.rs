@@ -20,7 +20,9 @@ const STEPS: usize = 64;
 /// or lies on it.
 pub(super) fn stitched(surface: &Ruled, cones: &[Cone], breaks: &[f64]) -> Option<Chain> {
     let regions = breaks.windows(2).zip(cones);
-    let parts: Option<Vec<Part>> = regions.map(|(w, c)| part(surface, c, [w[0], w[1]])).collect();
+    let parts: Option<Vec<Part>> = regions
+        .map(|(w, c)| part(surface, c, [w[0], w[1]]))
+        .collect();
     Some(Chain::link(&parts?))
 }
 
