@@ -158,9 +158,13 @@ pub(super) fn fit_target(
     };
     let found = optimise((&surface, &cones), &breaks, data, control)?;
     control.progress("measuring", 90.0);
-    let Some(chain) = stitch::stitched(&found.surface, &found.cones, &breaks) else {
-        return doubtful(Err(FitError::Numerical(String::new())), pieces);
+    let none = || {
+        FitError::Numerical(format!(
+            "the paper's solver found no {pieces} cones that could be rolled; ask for another \
+             number of patches, or take the solver \"own\""
+        ))
     };
+    let chain = stitch::stitched(&found.surface, &found.cones, &breaks).ok_or_else(none)?;
     let rigid = Freedom {
         strains: vec![[false; 2]; pieces],
         joints: false,
@@ -200,6 +204,7 @@ pub(super) fn fit_target(
     );
     let mut outcome = match outcome {
         Ok(outcome) if can_be_rolled(&outcome) => outcome,
+        Err(FitError::Numerical(_)) => return Err(none()),
         other => doubtful(other, pieces)?,
     };
     if !found.is_conical() {
