@@ -18,7 +18,8 @@ use nalgebra::{Point3, Vector3};
 /// which are small and squared twice, say too little beside the angles (the
 /// stitching then moves more), and 100 slows the descent without gain.
 pub(super) const BETA: f64 = 10.0;
-/// c, in the unit of the strip, which is about one long.
+/// c, in the unit of the strip, which is about one long; the paper gives no
+/// value, and 0.1 does as well.
 pub(super) const BEYOND: f64 = 0.3;
 
 /// A ruling's line.

@@ -76,7 +76,7 @@ fn the_number_of_threads_changes_nothing() {
     let strip = target(&carried(|s| wave(4.0 * s), 1.0, 0.2));
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.expect("threads").install(|| fit(&strip, 3))
+        pool.expect("threads").install(|| fit(&strip, 8))
     };
     assert_eq!(with(1), with(4));
 }
