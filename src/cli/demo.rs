@@ -8,7 +8,6 @@ use crate::app::{AppError, Service, Signals};
 use crate::settings::{DemoSettings, FrontSettings, ServeSettings, StoreSettings};
 use serde_json::Value;
 use std::net::SocketAddr;
-use std::path::Path;
 use std::time::Duration;
 use thiserror::Error;
 
@@ -59,7 +58,7 @@ async fn show(settings: &DemoSettings) -> Result<(), DemoError> {
     let service = Service::start(&serve).await?;
     let address = service.address();
     out::line(&format!("listening on http://{address}"));
-    let told = tell(address, &settings.out).await;
+    let told = tell(address, settings).await;
     if settings.keep && told.is_ok() {
         out::line("\nThe service stays up; Ctrl-C ends it.");
         service.until_signal(&mut signals, GRACE).await?;
@@ -70,7 +69,7 @@ async fn show(settings: &DemoSettings) -> Result<(), DemoError> {
 }
 
 /// Posts, waits, shows, saves.
-async fn tell(address: SocketAddr, folder: &Path) -> Result<(), DemoError> {
+async fn tell(address: SocketAddr, settings: &DemoSettings) -> Result<(), DemoError> {
     let client = Client::new(address);
     let job = client.get(EXAMPLE).await?;
     let accepted = client.post_json("/v1/jobs", &job).await?;
@@ -90,10 +89,13 @@ async fn tell(address: SocketAddr, folder: &Path) -> Result<(), DemoError> {
         let bytes = client
             .get(&format!("/v1/jobs/{id}/result.{format}"))
             .await?;
-        let path = files::write(folder, &format!("trawler.{format}"), &bytes)?;
+        let path = files::write(&settings.out, &format!("trawler.{format}"), &bytes)?;
         out::line(&format!("saved {}", path.display()));
     }
     out::line(&curl_lines(address));
+    if settings.keep {
+        out::line(&format!("In a browser: http://{address}/jobs/{id}/view"));
+    }
     Ok(())
 }
 

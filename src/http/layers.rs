@@ -162,7 +162,7 @@ fn complete(mut response: Response, method: &Method, path: &str, id: &str) -> Re
 /// The error behind an answer that a library made without a document.
 fn bare_error(response: &Response) -> Option<ApiError> {
     let status = response.status();
-    if !(status.is_client_error() || status.is_server_error()) {
+    if !(status.is_client_error() || status.is_server_error()) || is_page(response) {
         return None;
     }
     let code = Code::of_bare_status(status);
@@ -179,6 +179,12 @@ fn bare_error(response: &Response) -> Option<ApiError> {
         other => other.title().to_owned(),
     };
     Some(ApiError::new(code, detail))
+}
+
+/// Whether the answer was written for a person to read.
+fn is_page(response: &Response) -> bool {
+    let kind = response.headers().get(header::CONTENT_TYPE);
+    kind.is_some_and(|kind| kind.as_bytes().starts_with(b"text/html"))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! layers (id, log, problem documents, compression, panics, time, size)
-//!   └ routes: jobs results methods examples health docs metrics
+//!   └ routes: jobs results methods examples health docs metrics page
 //!       ├ extract, intake: from a request to a value, strictly
 //!       │    strict_json → schema_check → dto → methods::…::Request
 //!       └ respond, problem, failures: from a value or an error to an answer
@@ -40,6 +40,7 @@ mod docs;
 mod health;
 mod jobs;
 mod layers;
+mod page;
 mod references;
 mod results;
 
@@ -126,6 +127,7 @@ fn all_routes() -> OpenApiRouter<Api> {
         .routes(routes!(results::diagnostics))
         .merge(methods::routes())
         .merge(examples::routes())
+        .merge(page::routes())
         .routes(routes!(health::livez))
         .routes(routes!(health::readyz))
         .routes(routes!(health::version))

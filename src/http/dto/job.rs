@@ -330,6 +330,8 @@ pub struct Links {
     pub input: String,
     /// Post here to cancel it.
     pub cancel: String,
+    /// The page that shows it.
+    pub view: String,
 }
 
 impl Links {
@@ -340,6 +342,7 @@ impl Links {
             diagnostics: format!("{this}/diagnostics"),
             input: format!("{this}/input"),
             cancel: format!("{this}/cancel"),
+            view: format!("/jobs/{id}/view"),
             this,
         }
     }

@@ -1,0 +1,88 @@
+"""The page in a real browser: submit an example, see it, turn it, print it.
+
+usage: check_page.py BASE_URL FOLDER_FOR_PICTURES
+"""
+
+import sys
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from playwright.sync_api import expect, sync_playwright
+
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--disable-quic", "--no-first-run",
+]
+COLOURS = """() => {
+    const canvas = document.getElementById('canvas'), gl = canvas.getContext('webgl2');
+    const bytes = new Uint8Array(4 * canvas.width * canvas.height);
+    gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return new Set(new Uint32Array(bytes.buffer)).size;
+}"""
+OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+
+
+def check(page, base, folder):
+    page.goto(base + "/")
+    expect(page.get_by_text("No jobs yet: try an example.")).to_be_visible()
+    page.get_by_role("button", name="Submit the example").click()
+    row = page.locator("#rows tr").first
+    expect(row).to_contain_text("successful", timeout=120_000)
+    page.screenshot(path=folder / "list.png")
+    row.get_by_role("link").click()
+    expect(page.locator("#downloads li").first).to_be_visible()
+    expect(page.locator("#legend")).to_be_visible()
+    page.wait_for_function(f"({COLOURS})() > 50")
+    expect(page.locator("#summary li").first).to_be_visible()
+    page.wait_for_function("document.getElementById('picture').naturalWidth > 0")
+    page.screenshot(path=folder / "view.png", full_page=True)
+
+    canvas = page.locator("#canvas")
+    before = canvas.screenshot()
+    canvas.focus()
+    for _ in range(4):
+        page.keyboard.press("ArrowRight")
+    page.wait_for_timeout(200)
+    assert canvas.screenshot() != before, "an arrow key turns nothing"
+    box = canvas.bounding_box()
+    found = False
+    for share in (0.3, 0.4, 0.5, 0.6, 0.7):
+        page.mouse.move(box["x"] + box["width"] * share, box["y"] + box["height"] * 0.5)
+        found = found or "twist" in page.locator("#under").inner_text()
+    assert found, "no value under the pointer"
+
+    page.set_viewport_size({"width": 360, "height": 740})
+    page.wait_for_timeout(200)
+    page.screenshot(path=folder / "small.png", full_page=True)
+    assert page.evaluate(OVERFLOW) <= 0, "the small window scrolls sideways"
+    page.set_viewport_size({"width": 1000, "height": 1400})
+    page.emulate_media(media="print")
+    page.screenshot(path=folder / "print.png", full_page=True)
+    assert not page.locator("#canvas").is_visible(), "the print shows the canvas"
+    page.emulate_media(media="screen", color_scheme="dark")
+    page.screenshot(path=folder / "dark.png", full_page=True)
+
+
+def main():
+    base, folder = sys.argv[1].rstrip("/"), Path(sys.argv[2])
+    folder.mkdir(parents=True, exist_ok=True)
+    said, asked = [], set()
+    with sync_playwright() as play:
+        browser = play.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+        page = browser.new_page(viewport={"width": 1280, "height": 900})
+        page.on("console", lambda m: said.append(m.text) if m.type == "error" else None)
+        page.on("pageerror", lambda e: said.append(str(e)))
+        page.on("request", lambda r: asked.add(urlsplit(r.url).netloc))
+        try:
+            check(page, base, folder)
+        finally:
+            print("\n".join(said), file=sys.stderr)
+            browser.close()
+    assert not said, said
+    assert asked == {urlsplit(base).netloc}, asked
+    print("the page works")
+
+
+if __name__ == "__main__":
+    main()
