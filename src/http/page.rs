@@ -3,17 +3,17 @@
 //! without the internet; everything it shows comes from the `/v1` paths.
 
 use super::Api;
-use super::extract::Owner;
-use super::problem::{Code, Success};
+use super::extract::{Asked, Nothing, Owner};
+use super::openapi::{DocFiles, Everywhere, RawBytes};
+use super::problem::{ApiError, Code, Success};
 use super::respond::{self, File};
 use crate::jobs::{JobId, QueueError};
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, header};
-use axum::response::{IntoResponse, Response};
-use axum::routing::get;
+use axum::response::Response;
 use bytes::Bytes;
 use utoipa_axum::router::OpenApiRouter;
-use uuid::Uuid;
+use utoipa_axum::routes;
 
 const HTML: &str = "text/html; charset=utf-8";
 const SCRIPT: &str = "text/javascript; charset=utf-8";
@@ -38,43 +38,89 @@ const PARTS: [(&str, &str, &str); 7] = [
     ("icon.svg", "image/svg+xml", include_str!("page/icon.svg")),
 ];
 
-/// The paths of the page. They are for browsers and stand in no contract, so
-/// the OpenAPI document does not list them.
+/// The paths of the page.
 pub(super) fn routes() -> OpenApiRouter<Api> {
     OpenApiRouter::new()
-        .route("/", get(index))
-        .route("/jobs/{id}/view", get(view))
-        .route("/page/{part}", get(part))
+        .routes(routes!(index))
+        .routes(routes!(view))
+        .routes(routes!(part))
 }
 
-async fn index(headers: HeaderMap) -> Response {
+/// The page of all jobs
+#[utoipa::path(
+    get, path = "/", tag = "service", operation_id = "page",
+    params(("If-None-Match" = Option<String>, Header,
+        description = "The entity tag you know", nullable = false)),
+    responses(
+        (status = 200, description = "The page", content((String = "text/html"))),
+        (status = 304, description = "Unchanged"),
+        Everywhere,
+    ),
+)]
+async fn index(_: Asked<Nothing>, headers: HeaderMap) -> Response {
     answer(HTML, INDEX, &headers)
 }
 
+/// The page of a job
+///
+/// Its surface to turn, its drawing, its words and its files.
+#[utoipa::path(
+    get, path = "/jobs/{id}/view", tag = "service", operation_id = "page_of_job",
+    params(
+        ("id" = uuid::Uuid, Path, description = "The job"),
+        ("If-None-Match" = Option<String>, Header,
+            description = "The entity tag you know", nullable = false),
+    ),
+    responses(
+        (status = 200, description = "The page", content((String = "text/html"))),
+        (status = 304, description = "Unchanged"),
+        (status = 404, description = "No such job: a page with the way back",
+            content((String = "text/html"))),
+        Everywhere,
+    ),
+)]
 async fn view(
     State(api): State<Api>,
     Owner(owner): Owner,
     Path(id): Path<String>,
+    _: Asked<Nothing>,
     headers: HeaderMap,
-) -> Response {
-    let Ok(id) = Uuid::parse_str(&id) else {
-        return no_such_job();
+) -> Result<Response, ApiError> {
+    let Ok(id) = id.parse::<JobId>() else {
+        return Ok(no_such_job());
     };
-    match api.queue.get(&owner, JobId::from(id)).await {
-        Ok(_) => answer(HTML, VIEW, &headers),
-        Err(QueueError::NotFound) => no_such_job(),
-        Err(error) => super::problem::ApiError::from(error).into_response(),
+    match api.queue.get(&owner, id).await {
+        Ok(_) => Ok(answer(HTML, VIEW, &headers)),
+        Err(QueueError::NotFound) => Ok(no_such_job()),
+        Err(error) => Err(error.into()),
     }
 }
 
-async fn part(Path(name): Path<String>, headers: HeaderMap) -> Response {
-    match PARTS.iter().find(|(known, ..)| *known == name) {
-        Some((_, kind, text)) => answer(kind, text, &headers),
-        None => {
-            super::problem::ApiError::new(Code::NotFound, format!("the page has no part {name:?}"))
-                .into_response()
-        }
-    }
+/// A part of the pages
+#[utoipa::path(
+    get, path = "/page/{part}", tag = "service", operation_id = "page_part",
+    params(
+        ("part" = String, Path, description = "Its name", example = "style.css"),
+        ("If-None-Match" = Option<String>, Header,
+            description = "The entity tag you know", nullable = false),
+    ),
+    responses(
+        (status = 200, description = "The file", content((inline(RawBytes) = "*/*"))),
+        (status = 304, description = "Unchanged"),
+        DocFiles,
+    ),
+)]
+async fn part(
+    Path(name): Path<String>,
+    _: Asked<Nothing>,
+    headers: HeaderMap,
+) -> Result<Response, ApiError> {
+    let known = PARTS.iter().find(|(known, ..)| *known == name);
+    let Some((_, kind, text)) = known else {
+        let detail = format!("the page has no part {name:?}");
+        return Err(ApiError::new(Code::NotFound, detail));
+    };
+    Ok(answer(kind, text, &headers))
 }
 
 fn answer(content_type: &'static str, text: &'static str, request: &HeaderMap) -> Response {

@@ -67,7 +67,8 @@ export function readModel(text, rulings) {
  * nearest. The mesh's objects are the plates in order.
  */
 function twists(points, owners, rulings) {
-  const plates = [...Map.groupBy(rulings, (r) => r.plate).values()];
+  const plates = [];
+  for (const r of rulings) (plates[r.plate] ??= []).push(r);
   return Float32Array.from(points, (p, i) => {
     let best = Infinity, value = -1;
     for (const r of plates[owners[i]] ?? []) {
@@ -82,7 +83,7 @@ const distance = (p, q) => (p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 + (p[2] - q[2
 
 /**
  * @typedef {object} Ruling
- * @property {string} plate
+ * @property {number} plate from 0, in the order of the table
  * @property {number[]} from
  * @property {number[]} to
  * @property {number} twist degrees, signed
@@ -97,9 +98,11 @@ export function readRulings(text) {
   const [head, ...records] = text.split("\r\n").filter(Boolean).map(fields);
   const column = (name) => head?.findIndex((h) => h === name || h.startsWith(`${name} (`)) ?? -1;
   const place = (end) => ["x", "y", "z"].map((axis) => column(`${end}_${axis}`));
-  const from = place("from"), to = place("to"), twist = column("twist"), plate = column("plate");
-  if ([...from, ...to, twist, plate].includes(-1)) return [];
-  return records.map((r) => ({ plate: r[plate], from: from.map((k) => +r[k]), to: to.map((k) => +r[k]), twist: +r[twist] }));
+  const from = place("from"), to = place("to"), twist = column("twist"), number = column("ruling");
+  if ([...from, ...to, twist, number].includes(-1)) return [];
+  // Plates may share a name; their rulings count from 1 each.
+  let plate = -1;
+  return records.map((r) => ({ plate: (plate += Number(r[number] === "1")), from: from.map((k) => +r[k]), to: to.map((k) => +r[k]), twist: +r[twist] }));
 }
 
 /** The fields of a record. @param {string} record */

@@ -28,6 +28,9 @@ const LINES = `#version 300 es
 precision mediump float; out vec4 colour;
 void main() { colour = vec4(0.08, 0.10, 0.14, 1.0); }`;
 
+/** Rulings lie in the surface: a little nearer to the eye they show whole. */
+const RAISED = VERTEX.replace("place, 1.0); }", "place, 1.0); gl_Position.z -= 0.002; }");
+
 function programme(gl, vertex, fragment) {
   const made = gl.createProgram();
   for (const [kind, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
@@ -91,7 +94,7 @@ export class Viewer {
   #upload() {
     const gl = this.#gl, model = this.#model;
     this.#faces = programme(gl, VERTEX, FACES);
-    this.#edges = programme(gl, VERTEX, LINES);
+    this.#edges = programme(gl, RAISED, LINES);
     this.#mesh = gl.createVertexArray();
     gl.bindVertexArray(this.#mesh);
     attribute(gl, 0, model.positions, 3);
@@ -136,8 +139,6 @@ export class Viewer {
     gl.clearColor(0.96, 0.97, 0.98, 1);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
-    gl.enable(gl.POLYGON_OFFSET_FILL);
-    gl.polygonOffset(1, 1);
     this.#use(this.#faces, this.#mesh);
     gl.drawElements(gl.TRIANGLES, this.#model.indices.length, gl.UNSIGNED_INT, 0);
     if (!this.showsLines || this.#model.lines.length === 0) return;
