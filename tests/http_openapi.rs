@@ -104,8 +104,8 @@ async fn every_documented_operation_is_routed() {
         let answer = service.call(method.clone(), &path).await;
         // A page that tells of no such job is an answer of its route.
         let is_problem = answer.header("content-type") == "application/problem+json";
-        let code =
-            (is_problem && answer.status.as_u16() >= 400).then(|| answer.json()["code"].clone());
+        let told = is_problem && !answer.body.is_empty();
+        let code = told.then(|| answer.json()["code"].clone());
         let routed = !matches!(answer.status.as_u16(), 405)
             && code.as_ref().is_none_or(|code| code != "not-found");
         assert!(routed, "{method} {path}: {} {code:?}", answer.status);
