@@ -46,24 +46,30 @@ async function text(form) {
   return answer.ok ? answer.text() : "";
 }
 
-async function showFiles(forms) {
-  const sizes = await Promise.all(forms.map((form) => fetch(`${path}/result.${form}`, { method: "HEAD" })));
-  const there = forms.filter((_, i) => sizes[i].ok);
-  const items = forms.flatMap((form, i) => {
-    if (!sizes[i].ok) return [];
-    const kilobytes = Number(sizes[i].headers.get("Content-Length")) / 1000;
+/** All forms as links at once. */
+function showFiles(forms) {
+  at("downloads").replaceChildren(...forms.map((form) => {
     const item = element("li"), link = element("a", `result.${form}`);
     link.href = `${path}/result.${form}`;
-    item.append(link, ` ${kilobytes.toFixed(kilobytes < 10 ? 1 : 0)} kB`);
-    return [item];
-  });
-  at("downloads").replaceChildren(...items);
+    item.append(link, element("span"));
+    return item;
+  }));
   at("files").hidden = false;
-  return there;
+}
+
+/** Sizes one after the other, for a form is written when it is asked for. */
+async function showSizes() {
+  for (const item of [...at("downloads").children]) {
+    const answer = await fetch(item.firstChild.href, { method: "HEAD" });
+    const kilobytes = Number(answer.headers.get("Content-Length")) / 1000;
+    if (answer.ok) item.lastChild.textContent = ` ${kilobytes.toFixed(kilobytes < 10 ? 1 : 0)} kB`;
+    else if (answer.status === 404) item.remove();
+  }
 }
 
 async function showSpace(limit) {
   const [mesh, table] = await Promise.all([text("obj"), text("csv")]);
+  if (!mesh) return;
   const model = readModel(mesh, readRulings(table));
   at("space").hidden = false;
   const viewer = new Viewer(at("canvas"), model, limit || 1);
@@ -85,11 +91,15 @@ async function showSpace(limit) {
 async function showResult(job) {
   const [result, methods] = await Promise.all([ask(`${path}/result`), ask(`/v1/methods/${job.method}`)]);
   at("summary").replaceChildren(...result.summary.map((s) => element("li", s)));
-  const there = await showFiles(methods.formats);
+  const forms = methods.formats;
+  showFiles(forms);
   at("pictures").hidden = false;
-  at("drawing").hidden = !there.includes("svg");
-  if (there.includes("svg")) at("picture").src = at("sheet").href = `${path}/result.svg`;
-  if (there.includes("obj")) await showSpace(result.method_specific.options?.max_twist_deg ?? 0);
+  at("drawing").hidden = !forms.includes("svg");
+  at("picture").onerror = () => { at("drawing").hidden = true; };
+  if (forms.includes("svg")) at("picture").src = at("sheet").href = `${path}/result.svg`;
+  // A curve has no mesh though its method has the form.
+  if (forms.includes("obj") && result.surfaces.length > 0) await showSpace(result.method_specific.options?.max_twist_deg ?? 0);
+  await showSizes();
 }
 
 function showCurl() {
