@@ -98,8 +98,8 @@ pub(in super::super) fn within(
         let Some((moved, duals)) = solved else {
             break;
         };
-        let (next, places, ratio) = towards((&sheet, &at), moved, (bounds, worst), control)?;
-        (sheet, at) = (next, places);
+        let (next, ratio) = towards((&sheet, &mut at), moved, (bounds, worst), control)?;
+        sheet = next;
         worst = ratio.iter().copied().fold(0.0, f64::max);
         for (n, r) in narrow.iter_mut().zip(&ratio) {
             *n *= (1.0 / r).min(1.0);
@@ -126,11 +126,11 @@ pub(in super::super) fn within(
 /// those of the feet and normals of the sheet before, and a sheet that moves
 /// far turns away from them.
 fn towards(
-    (sheet, at): (&Sheet, &[[f64; 2]]),
+    (sheet, at): (&Sheet, &mut [[f64; 2]]),
     goal: Sheet,
     (bounds, before): (Bounds, f64),
     control: &dyn Control,
-) -> Result<(Sheet, Vec<[f64; 2]>, Vec<f64>), FitError> {
+) -> Result<(Sheet, Vec<f64>), FitError> {
     let mut next = goal;
     let mut halved = 0;
     loop {
@@ -138,7 +138,8 @@ fn towards(
         let ratio = ratios(&next, &mut places, bounds, control)?;
         let worst = ratio.iter().copied().fold(0.0, f64::max);
         if worst <= MILD.max(before) || halved == MOST_HALVINGS {
-            return Ok((next, places, ratio));
+            at.copy_from_slice(&places);
+            return Ok((next, ratio));
         }
         for (c, from) in next.control.iter_mut().zip(&sheet.control) {
             *c = 0.5 * (*c + from);
