@@ -226,7 +226,8 @@ async fn a_flood_of_small_values_is_cut_off() {
 async fn unknown_paths_and_methods_are_problems() {
     let service = idle_service().await;
     for path in [
-        "/",
+        "/page",
+        "/jobs",
         "/v1",
         "/v1/",
         "/v1/job",
