@@ -72,6 +72,15 @@ pub struct ShapeFigures {
     pub turns_deg: Vec<f64>,
 }
 
+/// How far the points of a net were smoothed before it was laid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smoothed {
+    /// Mean way of a vertex, a length.
+    pub mean: f64,
+    /// The largest.
+    pub max: At,
+}
+
 /// How far the vertices are from a target.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TargetFigures {
@@ -330,6 +339,19 @@ impl ShapeFigures {
             max_turn_deg: at_vertex(turn, surface, turned),
             moves,
             turns_deg: turns,
+        }
+    }
+}
+
+impl Smoothed {
+    /// Of the start after and before.
+    pub(super) fn of(held: &Surface, start: &Surface) -> Smoothed {
+        let pairs = held.vertices().iter().zip(start.vertices());
+        let ways: Vec<f64> = pairs.map(|(a, b)| (a.point - b.point).norm()).collect();
+        let (furthest, way) = top(ways.iter().copied());
+        Smoothed {
+            mean: mean(&ways),
+            max: at_vertex(way, start, furthest),
         }
     }
 }

@@ -27,9 +27,10 @@
 //!
 //! The torsion's weight rises ×1, ×10, ×100, ×1000 on every level, ×10⁴ on the
 //! last; then each patch is split in four, which changes nothing of the shape,
-//! until the net is as fine as asked. A net that is left with torsion is tried
-//! again with more bending, and split once more where the number of levels is
-//! free.
+//! until the net is as fine as asked. A net that is left with torsion or umbilics
+//! is tried again: with more bending, with one curvature asked to lead all over,
+//! from points that are smoothed before; the best of the tries is taken, and
+//! split once more where torsion is left and the number of levels is free.
 //!
 //! # Sources
 //! Zheng & Bo, *Design of smooth surfaces with regular network of curvature

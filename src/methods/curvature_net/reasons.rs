@@ -30,6 +30,10 @@ pub enum Why {
     Skew(f64),
     /// They run at this angle to the lines of curvature, degrees.
     OffPrincipal(f64),
+    /// Its points were smoothed, here by so much, in mean edges.
+    Smoothed(f64),
+    /// The line that was bent more there is bent less now.
+    OtherLeads,
     /// The curvatures hardly differ: by this share of their mean difference.
     NearlyRound(f64),
     /// Nothing here: it follows its neighbours.
@@ -44,6 +48,16 @@ impl fmt::Display for Why {
             Why::OffPrincipal(angle) => write!(
                 f,
                 "the lines of the start run at {angle:.0}° to its lines of curvature there"
+            ),
+            Why::Smoothed(way) => {
+                write!(
+                    f,
+                    "the points of the start were smoothed by {way:.2} edges there"
+                )
+            }
+            Why::OtherLeads => f.write_str(
+                "the curvatures of the start pass each other near there, and one has to lead \
+                 all over for a net without umbilics",
             ),
             Why::NearlyRound(_) => f.write_str("the start is bent alike in all directions there"),
             Why::Neighbours => f.write_str("it follows its neighbours"),
@@ -72,21 +86,27 @@ const TELLING_DEG: f64 = 3.0;
 /// Curvatures that differ by less than this share of the mean have no clear
 /// directions.
 const NEARLY_ROUND: f64 = 0.1;
+/// What explains this share of a way is its reason.
+const MOST_OF: f64 = 0.5;
 /// A lead below this share of the mean difference is an accident.
 const ACCIDENT: f64 = 0.1;
 
+/// A net, where it comes from, and what it was held to: all split alike.
+pub(super) struct Nets<'a> {
+    pub(super) surface: &'a Surface,
+    pub(super) start: &'a Surface,
+    pub(super) held: &'a Surface,
+}
+
 /// The vertices that went furthest, the furthest first; none where the net as
 /// a whole keeps the shape.
-pub(super) fn moved(
-    surface: &Surface,
-    start: &Surface,
-    shape: &ShapeFigures,
-    given: &[usize],
-) -> Vec<Moved> {
+pub(super) fn moved(nets: &Nets, shape: &ShapeFigures, given: &[usize]) -> Vec<Moved> {
     if shape.mean_move <= USUAL_MOVE && shape.mean_turn_deg <= USUAL_TURN_DEG {
         return Vec::new();
     }
+    let Nets { surface, start, .. } = *nets;
     let mean_difference = UmbilicFigures::of(start).mean_difference;
+    let mean_edge = surface.net().mean_edge();
     let coarse = coarse_vertices(surface, given.len());
     let mut found: Vec<Moved> = coarse
         .iter()
@@ -97,7 +117,8 @@ pub(super) fn moved(
             point: Point3::from(surface.vertices()[at.vertex].point),
             moved: shape.moves[at.vertex],
             turned_deg: shape.turns_deg[at.vertex],
-            why: why(start, at.vertex, mean_difference),
+            why: smoothed(nets, at.vertex, shape.moves[at.vertex], mean_edge)
+                .unwrap_or_else(|| why(nets, at.vertex, mean_difference)),
         })
         .collect();
     let size = |m: &Moved| (m.moved / USUAL_MOVE).max(m.turned_deg / USUAL_TURN_DEG);
@@ -136,22 +157,41 @@ fn coarse_vertices(surface: &Surface, count: usize) -> Vec<Coarse> {
         .collect()
 }
 
-/// What is wrong with the lines of the start at a vertex.
-fn why(start: &Surface, vertex: usize, mean_difference: f64) -> Why {
-    let k = &start.vertices()[vertex];
-    let angle = k.du.cross(&k.dv).norm().atan2(k.du.dot(&k.dv)).to_degrees();
-    let layout = start.layout();
+/// Whether a vertex went its way, in mean edges, because it was smoothed.
+fn smoothed(nets: &Nets, vertex: usize, moved: f64, mean_edge: f64) -> Option<Why> {
+    let [held, start] = [nets.held, nets.start].map(|net| net.vertices()[vertex].point);
+    let way = (held - start).norm() / mean_edge;
+    (way > 0.0 && way >= MOST_OF * moved).then_some(Why::Smoothed(way))
+}
+
+/// The curvatures of a net at a vertex, as seen from one of its patches.
+fn bend_at(net: &Surface, vertex: usize) -> Option<Bend> {
+    let layout = net.layout();
     let counts = layout.patch_counts();
     let at = [vertex / layout.columns, vertex % layout.columns];
     let patch = [0, 1].map(|d| at[d].min(counts[d] - 1));
     let share = [0, 1].map(|d| (at[d] - patch[d]) as f64);
-    let Some(bend) = Bend::of(&start.jet(patch, share)) else {
+    Bend::of(&net.jet(patch, share))
+}
+
+/// What is wrong with the lines of the start at a vertex.
+fn why(nets: &Nets, vertex: usize, mean_difference: f64) -> Why {
+    let Nets { surface, start, .. } = *nets;
+    let k = &start.vertices()[vertex];
+    let angle = k.du.cross(&k.dv).norm().atan2(k.du.dot(&k.dv)).to_degrees();
+    let Some(bend) = bend_at(start, vertex) else {
         return Why::Skew(angle);
     };
+    let lead = |bend: &Bend| bend.along - bend.across;
+    let now = bend_at(surface, vertex);
+    let turned_over = lead(&bend).abs() > 2.0 * bend.twist.abs()
+        && now.is_some_and(|now| lead(&now) * lead(&bend) < 0.0);
     let difference = bend.difference() / mean_difference.max(f64::MIN_POSITIVE);
     let off = bend.off_principal().to_degrees();
     if (angle - 90.0).abs() > TELLING_DEG {
         Why::Skew(angle)
+    } else if turned_over {
+        Why::OtherLeads
     } else if difference < NEARLY_ROUND {
         Why::NearlyRound(difference)
     } else if off > TELLING_DEG {

@@ -1,7 +1,7 @@
 //! The verdict, and the sentences that say it.
 
 use super::Smooth;
-use super::diagnose::{At, TargetFigures};
+use super::diagnose::{At, Smoothed, TargetFigures};
 use super::lines::REACHED;
 use super::outcome::{Cyclides, Outcome};
 use super::reasons::{Crossing, Moved};
@@ -34,6 +34,7 @@ pub(super) fn summary(outcome: &Outcome) -> Vec<String> {
         umbilics(smooth),
         shape(smooth),
     ];
+    sentences.extend(smooth.smoothed.as_ref().map(smoothed));
     sentences.extend(smooth.target.as_ref().map(target));
     if let Some(cyclides) = &outcome.cyclides {
         sentences.push(spline(cyclides));
@@ -189,6 +190,16 @@ fn why(moved: &[Moved]) -> String {
     } else {
         format!("; furthest went {}", named.join("; "))
     }
+}
+
+fn smoothed(s: &Smoothed) -> String {
+    format!(
+        "The given points were smoothed before, by {:.2e} on average and {:.2e} at most, at {}: as \
+         they were given the net had umbilics.",
+        s.mean,
+        s.max.value,
+        place(&s.max)
+    )
 }
 
 fn target(t: &TargetFigures) -> String {

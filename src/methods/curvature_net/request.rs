@@ -71,6 +71,17 @@ pub enum Solver {
     Paper,
 }
 
+/// What goes first where a net cannot both keep its shape and be without
+/// umbilics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Umbilics {
+    /// That it has none: the shape goes as far as it must.
+    Avoid,
+    /// The shape: umbilics stay where the curvatures of the start pass each
+    /// other.
+    KeepShape,
+}
+
 /// Strips that stand on the lines of the net along the normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Supports {
@@ -86,6 +97,8 @@ pub struct Options {
     pub levels: Option<usize>,
     /// How strongly the net is held, relative to the usual, in [1e-3, 1e3].
     pub closeness: f64,
+    /// What goes first, the shape or that there are no umbilics.
+    pub umbilics: Umbilics,
     /// What it is held to; `None`: the start.
     pub target: Option<Target>,
     /// Whether an exact cyclide spline is asked.
@@ -108,6 +121,7 @@ impl Default for Options {
         Options {
             levels: None,
             closeness: 1.0,
+            umbilics: Umbilics::Avoid,
             target: None,
             cyclide: true,
             strips: Vec::new(),

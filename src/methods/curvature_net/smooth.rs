@@ -1,11 +1,11 @@
 //! Stage 1 as a whole: from the request to the smooth surface and what can be
 //! said about it, in the user's scale.
 
-use super::diagnose::{At, BorderFigures, ShapeFigures, TargetFigures, UmbilicFigures};
+use super::diagnose::{At, BorderFigures, ShapeFigures, Smoothed, TargetFigures, UmbilicFigures};
 use super::input::Task;
 use super::lines::{Step, solve};
 use super::paper;
-use super::reasons::{Crossing, Moved, crossing, moved};
+use super::reasons::{Crossing, Moved, Nets, crossing, moved};
 use super::request::{Request, Solver};
 use super::surface::Surface;
 use crate::methods::{Control, FitError};
@@ -31,6 +31,9 @@ pub struct Smooth {
     pub shape: ShapeFigures,
     /// How far it is from the target, where there is one.
     pub target: Option<TargetFigures>,
+    /// How far the given points were smoothed before, where they were: as they
+    /// were given they made umbilics.
+    pub smoothed: Option<Smoothed>,
     /// The vertices that went further than usual, with reasons.
     pub moved: Vec<Moved>,
     /// Where the start itself makes umbilics unavoidable: the curvatures pass
@@ -50,7 +53,7 @@ pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitErr
     control.progress("reading", 0.0);
     let task = Task::new(request)?;
     let (lines, paper) = match request.options.solver {
-        Solver::Own => (solve(&task, request.options.closeness, control)?, None),
+        Solver::Own => (solve(&task, &request.options, control)?, None),
         Solver::Paper => {
             let net = paper::solve(&task, control)?;
             (net.lines.clone(), Some(net))
@@ -71,16 +74,24 @@ pub fn smooth(request: &Request, control: &dyn Control) -> Result<Smooth, FitErr
     }
     let shape = ShapeFigures::of(&lines.surface, &lines.start);
     let (size, middle) = (task.size, &task.middle);
-    let (surface, start) = (
-        lines.surface.mapped(size, middle),
-        lines.start.mapped(size, middle),
-    );
+    let in_user_scale = |net: &Surface| net.mapped(size, middle);
+    let (surface, start) = (in_user_scale(&lines.surface), in_user_scale(&lines.start));
+    let held = in_user_scale(&lines.held);
     Ok(Smooth {
         target: task
             .target
             .as_ref()
             .map(|target| TargetFigures::of(&lines.surface, target).in_user_scale(&task)),
-        moved: moved(&surface, &start, &shape, &task.given),
+        moved: moved(
+            &Nets {
+                surface: &surface,
+                start: &start,
+                held: &held,
+            },
+            &shape,
+            &task.given,
+        ),
+        smoothed: lines.is_calmed.then(|| Smoothed::of(&held, &start)),
         crossing: crossing(&start),
         borders: borders.in_user_scale(&task),
         umbilics: umbilics.in_user_scale(&task),

@@ -23,6 +23,9 @@ pub struct CurvatureNetDiagnostics {
     pub umbilics: UmbilicResult,
     /// How far it is from the start.
     pub shape: ShapeResult,
+    /// How far the given points were smoothed before; null where they were not.
+    /// They are where the net has umbilics as it is given.
+    pub smoothed: Option<SmoothedResult>,
     /// How far it is from the target; null without one.
     pub target: Option<TargetResult>,
     /// The cyclide spline; null unless asked.
@@ -84,6 +87,15 @@ pub struct CrossingResult {
     pub u: PlaceResult,
     /// Where the line along v is: κ_v − κ_u.
     pub v: PlaceResult,
+}
+
+/// How far points were smoothed. Lengths.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct SmoothedResult {
+    /// Mean way of a vertex.
+    pub moved_mean: f64,
+    /// The largest.
+    pub moved_max: PlaceResult,
 }
 
 /// How far the smooth surface is from a target. Lengths.
@@ -222,6 +234,10 @@ impl From<&Outcome> for CurvatureNetDiagnostics {
                 turned_max_deg: place(&smooth.shape.max_turn_deg, 1.0),
                 left: left(outcome),
             },
+            smoothed: smooth.smoothed.as_ref().map(|s| SmoothedResult {
+                moved_mean: s.mean,
+                moved_max: place(&s.max, 1.0),
+            }),
             target: smooth.target.as_ref().map(|t| TargetResult {
                 distance_mean: t.mean_distance,
                 distance_max: place(&t.max_distance, 1.0),

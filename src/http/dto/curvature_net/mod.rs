@@ -83,6 +83,9 @@ pub struct CurvatureNetOptions {
     /// the usual.
     #[schema(minimum = 0.001, maximum = 1000)]
     pub closeness: f64,
+    /// What goes first where a net cannot both keep its shape and be without
+    /// umbilics.
+    pub umbilics: UmbilicsWord,
     /// A surface that the net keeps close to instead of the start.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<TargetOption>,
@@ -99,6 +102,19 @@ pub struct CurvatureNetOptions {
     pub supports: Option<SupportsOption>,
     /// Which algorithm makes the smooth surface.
     pub solver: CurvatureNetSolver,
+}
+
+/// What goes first: `avoid`, that the net has no umbilic, its shape goes as far
+/// as it must; or `keep_shape`, umbilics stay where the curvatures of the start
+/// pass each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum UmbilicsWord {
+    /// No umbilics.
+    #[default]
+    Avoid,
+    /// The shape.
+    KeepShape,
 }
 
 /// A surface to keep close to: exactly one of `mesh` and `surface`.
@@ -139,6 +155,7 @@ impl Default for CurvatureNetOptions {
         let Options {
             levels: _,
             closeness,
+            umbilics: _,
             target: _,
             cyclide,
             strips: _,
@@ -149,6 +166,7 @@ impl Default for CurvatureNetOptions {
         CurvatureNetOptions {
             levels: None,
             closeness,
+            umbilics: UmbilicsWord::Avoid,
             target: None,
             cyclide,
             strips: Vec::new(),

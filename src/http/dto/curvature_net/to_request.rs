@@ -11,11 +11,12 @@ use super::super::job::Units;
 use super::super::mesh::MeshInput;
 use super::{
     CurvatureNetInput, CurvatureNetOptions, CurvatureNetSolver, DirectionWord, TargetOption,
+    UmbilicsWord,
 };
 use crate::http::problem::FieldError;
 use crate::methods::curvature_net::Request;
 use crate::methods::curvature_net::request::{
-    Grid, Input, Options, QuadMesh, Solver, Supports, Target,
+    Grid, Input, Options, QuadMesh, Solver, Supports, Target, Umbilics,
 };
 
 /// The method's request out of a job's input and options.
@@ -134,6 +135,10 @@ fn asked(o: &CurvatureNetOptions, units: Units, faults: &mut Vec<FieldError>) ->
     Some(Options {
         levels: o.levels.map(|l| l.0),
         closeness: o.closeness,
+        umbilics: match o.umbilics {
+            UmbilicsWord::Avoid => Umbilics::Avoid,
+            UmbilicsWord::KeepShape => Umbilics::KeepShape,
+        },
         target,
         cyclide: o.cyclide,
         strips,

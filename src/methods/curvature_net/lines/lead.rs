@@ -7,13 +7,17 @@
 //!
 //! Where the start hardly changes sign σ is that of the whole net, which then
 //! has no umbilic. Where both signs are at home in the start, some line between
-//! them has κ_u = κ_v whatever is done, and each side keeps its own.
+//! them has κ_u = κ_v: each side keeps its own, or, where the shape may go, one
+//! sign is asked of all. Where the lines of the start run between its lines of curvature, as those of a
+//! hyperbolic paraboloid along its rulings do, none is at home: the net takes
+//! one sign, and the other where that ends in umbilics.
 
 use super::edge::vector;
 use crate::methods::curvature_net::bend::Bend;
 use crate::methods::curvature_net::surface::{Surface, UNKNOWNS, weights};
 use crate::solver::Blocks;
 use nalgebra::Vector3;
+use std::f64::consts::FRAC_PI_8;
 
 /// A corner of a patch with its neighbours along u and v.
 #[derive(Debug, Clone, Copy)]
@@ -50,37 +54,70 @@ const ACCIDENT: f64 = 0.1;
 /// A start whose curvatures usually differ by less than this share of
 /// themselves is round like a sphere: no sign is at home there.
 const ROUND: f64 = 0.3;
+/// Lines usually further than this from the lines of curvature, radians, follow
+/// neither: half of the most that there is.
+const BETWEEN: f64 = FRAC_PI_8;
 /// Corners with this much more than they must have are not watched.
 const SAFE: f64 = 2.0;
 /// Softness of the bound, relative to it.
 const SOFT: f64 = 0.1;
 
-/// κ_u and κ_v at a corner of a patch.
-fn curvatures(surface: &Surface, patch: [usize; 2], corner: [usize; 2]) -> [f64; 2] {
-    let bend = Bend::of(&surface.jet(patch, corner.map(|c| c as f64)));
-    bend.map_or([0.0, 0.0], |bend| [bend.along, bend.across])
+/// Whether the lines of a start run between its lines of curvature, so that
+/// neither sign of d is at home there.
+pub(super) fn has_no_side(start: &Surface) -> bool {
+    Rule::of(corners(start).iter().map(|(.., bend)| *bend)).is_between
+}
+
+/// Whether one curvature leads all over a start, but for accidents.
+pub(super) fn has_one_side(start: &Surface) -> bool {
+    let rule = Rule::of(corners(start).iter().map(|(.., bend)| *bend));
+    rule.common.is_some() && !rule.is_between
+}
+
+/// The curvatures at a corner of a patch; flat where it has no tangent plane.
+fn bend_at(surface: &Surface, patch: [usize; 2], corner: [usize; 2]) -> Bend {
+    let flat = Bend {
+        along: 0.0,
+        across: 0.0,
+        twist: 0.0,
+    };
+    Bend::of(&surface.jet(patch, corner.map(|c| c as f64))).unwrap_or(flat)
+}
+
+/// Every corner of every patch: patch, place in [`CORNERS`], curvatures.
+fn corners(surface: &Surface) -> Vec<([usize; 2], usize, Bend)> {
+    let patches = surface.layout().patches();
+    patches
+        .flat_map(|(i, j)| (0..4).map(move |c| ([i, j], c)))
+        .map(|(patch, c)| (patch, c, bend_at(surface, patch, CORNERS[c])))
+        .collect()
 }
 
 const CORNERS: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
 
 impl Lead {
     /// For a level; only corners that are near losing it now.
-    pub(super) fn new(start: &Surface, now: &Surface) -> Self {
-        let layout = start.layout();
-        let all: Vec<([usize; 2], usize, [f64; 2])> = layout
-            .patches()
-            .flat_map(|(i, j)| (0..4).map(move |c| ([i, j], c)))
-            .map(|(patch, c)| (patch, c, curvatures(start, patch, CORNERS[c])))
-            .collect();
-        let Rule { common, least } = Rule::of(all.iter().map(|(.., k)| *k));
-        let asked = all.iter().filter_map(|(patch, c, k)| {
-            let d = k[0] - k[1];
+    pub(super) fn new(start: &Surface, now: &Surface, side: Side) -> Self {
+        let all = corners(start);
+        let Rule {
+            common,
+            majority,
+            least,
+            ..
+        } = Rule::of(all.iter().map(|(.., bend)| *bend));
+        let common = match side {
+            Side::Own => common,
+            Side::Majority => Some(majority),
+            Side::Minority => Some(-majority),
+        };
+        let asked = all.iter().filter_map(|(patch, c, bend)| {
+            let d = bend.along - bend.across;
             let sign = common.unwrap_or(d.signum());
             let bound = (KEPT * sign * d).max(least);
             // A corner that itself lies between the signs has nothing to keep.
             let at_home = common.is_some() || KEPT * d.abs() >= least;
-            let [u, v] = curvatures(now, *patch, CORNERS[*c]);
-            let at_risk = sign * (u - v) < SAFE * bound;
+            let now = bend_at(now, *patch, CORNERS[*c]);
+            let at_risk = sign * (now.along - now.across) < SAFE * bound;
             (at_home && at_risk).then(|| corner(start, *patch, *c, (sign, bound)))
         });
         Lead {
@@ -103,30 +140,49 @@ impl Lead {
     }
 }
 
+/// Which curvature shall lead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// As in the start: one all over, or each where it leads there.
+    Own,
+    /// All over the one that leads on most of the start.
+    Majority,
+    /// All over the other.
+    Minority,
+}
+
 /// What is asked of a net.
 struct Rule {
     /// The sign of d that all corners shall have, if it is one.
     common: Option<f64>,
+    /// The sign of d on most of the start.
+    majority: f64,
     /// The least d of a corner.
     least: f64,
+    /// Whether the lines of the start run between its lines of curvature.
+    is_between: bool,
 }
 
 impl Rule {
     /// From the curvatures of the start.
-    fn of(all: impl Iterator<Item = [f64; 2]>) -> Rule {
-        let all: Vec<[f64; 2]> = all.collect();
+    fn of(all: impl Iterator<Item = Bend>) -> Rule {
+        let all: Vec<Bend> = all.collect();
         let (mut up, mut down) = (0.0, 0.0);
-        for [u, v] in &all {
-            up += (u - v).max(0.0);
-            down += (v - u).max(0.0);
+        for bend in &all {
+            up += (bend.along - bend.across).max(0.0);
+            down += (bend.across - bend.along).max(0.0);
         }
         // A few wild corners of a coarse start say nothing of its shape.
-        let difference = median(all.iter().map(|[u, v]| (u - v).abs()));
-        let bend = median(all.iter().map(|[u, v]| 0.5 * (u.abs() + v.abs())));
-        let is_accident = up.min(down) <= ACCIDENT * (up + down) || difference <= ROUND * bend;
+        let difference = median(all.iter().map(Bend::difference));
+        let round = median(all.iter().map(|b| 0.5 * (b.along.abs() + b.across.abs())));
+        let is_between = median(all.iter().map(Bend::off_principal)) > BETWEEN;
+        let is_accident = up.min(down) <= ACCIDENT * (up + down) || difference <= ROUND * round;
+        let majority = if up >= down { 1.0 } else { -1.0 };
         Rule {
-            common: is_accident.then_some(if up >= down { 1.0 } else { -1.0 }),
-            least: LEAST * difference.max(ROUND * bend),
+            common: (is_accident || is_between).then_some(majority),
+            majority,
+            least: LEAST * difference.max(ROUND * round),
+            is_between,
         }
     }
 }

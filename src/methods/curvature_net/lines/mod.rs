@@ -1,6 +1,7 @@
 //! The net of lines of curvature.
 
 pub(super) mod border;
+mod calm;
 pub(super) mod edge;
 mod hold;
 mod lead;

@@ -2,7 +2,7 @@
 
 use super::edge::{COLUMNS, Edge, edges, vector};
 use super::hold::Hold;
-use super::lead::Lead;
+use super::lead::{Lead, Side};
 use crate::methods::curvature_net::surface::{Surface, UNKNOWNS};
 use crate::methods::curvature_net::target::Target;
 use crate::solver::{Blocks, LeastSquares};
@@ -68,13 +68,14 @@ impl<'a> Level<'a> {
         now: &Surface,
         target: Option<&'a Target>,
         weights: Weights,
+        side: Side,
     ) -> Self {
         Level {
             weights,
             vertices: start.vertices().len(),
             edges: edges(start),
             hold: Hold::new(start, target),
-            lead: Lead::new(start, now),
+            lead: Lead::new(start, now, side),
         }
     }
 
@@ -178,7 +179,7 @@ mod tests {
                 .map(|(k, x)| x + 0.2 * (k as f64 * 1.7).sin())
                 .collect();
             let now = start.with_unknowns(&x);
-            let problem = Level::new(&start, &now, None, Weights::new(2.0, 1.5, 0.7));
+            let problem = Level::new(&start, &now, None, Weights::new(2.0, 1.5, 0.7), Side::Own);
             assert!(problem.lead.count() > 5);
             let worst = worst_disagreement(&problem, &x, 1e-6);
             assert!(worst.relative < 1e-6, "{worst:?}");
@@ -200,7 +201,13 @@ mod tests {
         let spline = BSplineSurface::new([2, 2], [knots.clone(), knots], hill.collect(), None);
         let spline = request::Target::BSpline(Box::new(spline.expect("a surface")));
         let target = Target::new(&spline, 1.0, &nalgebra::Vector3::zeros()).expect("a target");
-        let problem = Level::new(&start, &start, Some(&target), Weights::new(2.0, 1.5, 0.7));
+        let problem = Level::new(
+            &start,
+            &start,
+            Some(&target),
+            Weights::new(2.0, 1.5, 0.7),
+            Side::Own,
+        );
         let worst = worst_disagreement(&problem, &start.unknowns(), 1e-6);
         assert!(worst.relative < 1e-6, "{worst:?}");
     }

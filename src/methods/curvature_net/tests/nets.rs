@@ -2,7 +2,7 @@ use super::models::{bilge, request, saddle, tube, vault};
 use crate::methods::FitError;
 use crate::methods::curvature_net::lines::REACHED;
 use crate::methods::curvature_net::reasons::Why;
-use crate::methods::curvature_net::request::Solver;
+use crate::methods::curvature_net::request::{Solver, Umbilics};
 use crate::methods::curvature_net::{Smooth, smooth};
 use crate::solver::{Control, Stop, Unwatched};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -86,6 +86,7 @@ fn a_hypar_along_its_rulings_says_why_it_cannot_keep_its_shape() {
     });
     let s = fitted(hypar);
     assert!(s.borders.mean_torsion <= REACHED[0]);
+    assert!(s.umbilics.patches.is_empty(), "{:?}", s.umbilics.patches);
     assert!(s.shape.mean_turn_deg > 3.0);
     let why = s.moved.iter().map(|m| m.why);
     let off = why.filter(|why| matches!(why, Why::OffPrincipal(angle) if *angle > 40.0));
@@ -102,10 +103,58 @@ fn a_wave_says_between_which_places_it_must_have_umbilics() {
             0.5 * (5.0 * u + 1.0).sin() + 0.4 * (4.0 * v).cos(),
         ]
     });
-    let s = fitted(wave);
-    assert!(!s.umbilics.patches.is_empty());
-    let crossing = s.crossing.expect("both lead");
+    let mut request = request(wave);
+    request.options.umbilics = Umbilics::KeepShape;
+    let kept = smooth(&request, &Unwatched).expect("a surface");
+    assert!(!kept.umbilics.patches.is_empty());
+    let crossing = kept.crossing.expect("both lead");
     assert!(crossing.u.value > 0.1 && crossing.v.value > 0.1);
+    // Or it goes without, and says where its shape went.
+    request.options.umbilics = Umbilics::Avoid;
+    let free = smooth(&request, &Unwatched).expect("a surface");
+    assert!(
+        free.umbilics.patches.is_empty(),
+        "{:?}",
+        free.umbilics.patches
+    );
+    assert!(free.borders.mean_torsion <= REACHED[0]);
+    assert!(free.shape.mean_turn_deg > kept.shape.mean_turn_deg);
+    let why = free.moved.iter().map(|m| m.why);
+    assert!(
+        why.filter(|why| *why == Why::OtherLeads).count() > 0,
+        "{:?}",
+        free.moved
+    );
+}
+
+/// A part of a torus, each point off by up to `noise`.
+fn rough_torus(noise: f64) -> crate::methods::curvature_net::request::Grid {
+    let mut torus = super::models::grid([5, 5], [false, false], |u, v| {
+        let (sin, cos) = (2.0 * u).sin_cos();
+        let angle = 2.0 * v - 1.0;
+        let radius = 3.0 + angle.cos();
+        [radius * cos, radius * sin, angle.sin()]
+    });
+    for (k, p) in torus.points.iter_mut().enumerate() {
+        let wild = |n: f64| noise * (n * (k as f64 + 1.0) * 12.9898).sin();
+        *p += nalgebra::Vector3::new(wild(1.0), wild(1.7), wild(2.9));
+    }
+    torus
+}
+
+#[test]
+fn measured_points_are_smoothed_where_they_would_make_umbilics() {
+    let s = fitted(rough_torus(0.0));
+    assert!(s.smoothed.is_none());
+    let s = fitted(rough_torus(0.1));
+    assert!(s.borders.mean_torsion <= REACHED[0]);
+    assert!(s.umbilics.patches.is_empty(), "{:?}", s.umbilics.patches);
+    assert!(s.shape.mean_turn_deg < 15.0, "{:?}", s.shape);
+    let smoothed = s.smoothed.expect("told");
+    assert!(
+        smoothed.mean > 0.01 && smoothed.max.value < 0.3,
+        "{smoothed:?}"
+    );
 }
 
 #[test]
