@@ -18,9 +18,9 @@
 //! | [`patterns`] | flat patterns (SVG), the same for the cutting table ([`dxf`]) | yards |
 //! | [`offsets`] | a faired table of offsets (CSV), its lines plan (SVG) | loftsmen, print |
 //!
-//! Two modules read: [`points_in`] lists of points and tables of offsets as
-//! yards write them, [`mesh_in`] meshes. They tell how they read a file and
-//! guess nothing that changes a number.
+//! Three modules read: [`points_in`] lists of points and tables of offsets as
+//! yards write them, [`mesh_in`] meshes, [`step_in`] surfaces. They tell how they
+//! read a file and guess nothing that changes a number.
 
 pub mod brep;
 pub mod cones;
@@ -40,5 +40,6 @@ pub mod patterns;
 pub mod plates;
 pub mod points_in;
 pub mod step;
+pub mod step_in;
 mod strip;
 pub mod svg;
