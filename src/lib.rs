@@ -54,3 +54,4 @@ pub mod numerics;
 pub mod settings;
 pub mod solver;
 pub mod telemetry;
+pub mod workshop;

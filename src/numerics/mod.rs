@@ -2,6 +2,7 @@
 //! nobody else in the crate.
 
 pub mod banded;
+pub mod legendre;
 pub mod quadrature;
 mod sinc;
 
