@@ -169,14 +169,14 @@ fn the_mesh_is_open_at_the_hull_s_edge_alone() {
 
 #[test]
 fn the_table_has_a_row_a_ruling() {
-    let table = csv::ruling_table(&hull());
+    let table = csv::roll_table(&hull(), &[]);
     leave("loft.csv", &table);
     assert_eq!(table.matches("\r\n").count(), 1 + 151 + 132 + 181);
 }
 
 #[test]
 fn the_lines_plan_is_drawn() {
-    let page = svg::lines_plan(&hull());
+    let page = svg::lines_plan(&hull(), None);
     leave("loft.svg", &page);
     assert!(page.starts_with("<svg ") && page.ends_with("</svg>\n"));
     assert!(page.len() < 300_000, "{} bytes", page.len());

@@ -6,16 +6,17 @@ mod http_support;
 
 use axum::body::Body;
 use axum::http::{Method, StatusCode};
-use http_support::{idle_service, job, service};
+use http_support::{idle_service, job, real_service, service};
 use serde_json::{Value, json};
 
-const FORMATS: [(&str, &str); 6] = [
+const FORMATS: [(&str, &str); 7] = [
     ("json", "application/json"),
     ("obj", "model/obj"),
     ("csv", "text/csv; charset=utf-8"),
     ("svg", "image/svg+xml"),
     ("step", "model/step"),
     ("igs", "model/iges"),
+    ("dxf", "image/vnd.dxf"),
 ];
 
 #[tokio::test]
@@ -264,4 +265,108 @@ async fn cad_files_carry_names_units_and_verdict() {
     for part in ["within_limits: ", ",6,1HM,", "11Hdeck - keel", "8Hruling 1"] {
         assert!(iges.contains(part), "{part}");
     }
+}
+
+/// Areas of the closed polylines of a drawing's layer CUT, arcs and all.
+fn cut_areas(dxf: &str) -> Vec<f64> {
+    let lines: Vec<&str> = dxf.lines().collect();
+    let pairs: Vec<(&str, &str)> = (lines.chunks_exact(2))
+        .map(|p| (p[0].trim(), p[1].trim()))
+        .collect();
+    let drawn = pairs.split(|p| p.0 == "0");
+    let cut = drawn.filter(|e| e.contains(&("8", "CUT")) && e.contains(&("100", "AcDbPolyline")));
+    cut.map(|entity| {
+        assert!(entity.contains(&("70", "1")), "not closed");
+        let mut corners: Vec<[f64; 3]> = Vec::new();
+        for (code, value) in entity {
+            let number = || value.parse::<f64>().unwrap();
+            match (*code, corners.last_mut()) {
+                ("10", _) => corners.push([number(), 0.0, 0.0]),
+                ("20", Some(corner)) => corner[1] = number(),
+                ("42", Some(corner)) => corner[2] = number(),
+                _ => {}
+            }
+        }
+        let next = corners.iter().cycle().skip(1);
+        let twice = corners.iter().zip(next).map(|(a, b)| {
+            let angle = 4.0 * a[2].atan();
+            let chord2 = (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2);
+            let segment = if angle == 0.0 {
+                0.0
+            } else {
+                chord2 / (4.0 * (0.5 * angle).sin().powi(2)) * (angle - angle.sin())
+            };
+            a[0] * b[1] - a[1] * b[0] + segment
+        });
+        0.5 * twice.sum::<f64>().abs()
+    })
+    .collect()
+}
+
+#[tokio::test]
+async fn plates_come_with_flat_patterns_and_roll_tables() {
+    let service = real_service().await;
+    let trawler = service.get("/v1/examples/trawler").await.json();
+    let place = service.done(&trawler).await;
+    let result = service.get(&format!("{place}/result.json")).await.json();
+    let plates = result["method_specific"]["plates"].as_array().unwrap();
+    let figures = result["diagnostics"]["plates"].as_array().unwrap();
+    let file = async |extension: &str| {
+        let file = service.get(&format!("{place}/result.{extension}")).await;
+        String::from_utf8(file.body.to_vec()).unwrap()
+    };
+
+    let dxf = file("dxf").await;
+    let areas = cut_areas(&dxf);
+    assert_eq!(areas.len(), 3);
+    for layer in ["CUT", "ROLL", "FRAME", "TEXT"] {
+        assert!(dxf.contains(&format!("\r\n{layer}\r\n")), "{layer}");
+    }
+    assert_eq!(dxf.matches("LIMITS MET. Plate").count(), 3);
+    assert_eq!(dxf.matches("inside up - lengths in ft").count(), 3);
+    assert!(dxf.contains("\r\nx = 35\r\n"), "a station");
+
+    let csv = file("csv").await;
+    let mut rows = csv.lines();
+    let header: Vec<&str> = rows.next().unwrap().split(',').collect();
+    assert_eq!(header.len(), 21);
+    assert_eq!(header[13], "piece");
+    assert_eq!(header[19], "bend_up_to_next (deg)");
+
+    for (k, plate) in plates.iter().enumerate() {
+        let flat = &plate["flat"];
+        assert_eq!(flat["side"], "inside");
+        let piece = &flat["pieces"][0];
+        let rulings = piece["rulings"].as_array().unwrap();
+        assert_eq!(rulings.len(), plate["rulings"].as_array().unwrap().len());
+        assert_eq!(rows.by_ref().take(rulings.len()).count(), rulings.len());
+        // The cut area is the plate's, but for the strain of its twist.
+        let number = |value: &Value| value.as_f64().unwrap();
+        let twist = number(&flat["strain"]["twist_percent"]) / 100.0;
+        let area = number(&figures[k]["area"]);
+        assert!((areas[k] / number(&piece["area"]) - 1.0).abs() < 1e-9);
+        assert!((areas[k] / area - 1.0).abs() < twist + 1e-6, "plate {k}");
+        let strain = number(&figures[k]["membrane_strain_percent"]) / 100.0;
+        assert!(twist <= strain * 1.01, "{twist} {strain}");
+        assert!(number(&flat["strain"]["boundary_percent"]) < 1e-4);
+        // Rulings keep their lengths.
+        for (ruling, on_plate) in rulings.iter().zip(plate["rulings"].as_array().unwrap()) {
+            let square =
+                |i: usize| (number(&on_plate["to"][i]) - number(&on_plate["from"][i])).powi(2);
+            let length = (0..3).map(square).sum::<f64>().sqrt();
+            assert!(
+                (number(&ruling["length"]) - length).abs() < 1e-6,
+                "{ruling}"
+            );
+        }
+    }
+    assert_eq!(rows.count(), 0);
+    let last = result["summary"].as_array().unwrap().last().unwrap();
+    assert!(
+        last.as_str()
+            .unwrap()
+            .starts_with("The flat patterns need sheets")
+    );
+    let svg = file("svg").await;
+    assert!(svg.contains("flat patterns, 1 : 100<") && svg.contains("Body (y–z)"));
 }

@@ -1,4 +1,5 @@
-//! The ruling table: one row a ruling, as RFC 4180 comma-separated values.
+//! The roll table: one row a ruling, as RFC 4180 comma-separated values. A
+//! ruling along which the flat pattern is cut has a row for either piece.
 //!
 //! Numbers are written with as many digits as it takes to read the same bits
 //! back. A flat place has no bend radius: its field is empty. Spreadsheets run
@@ -6,18 +7,46 @@
 //! name gets a leading apostrophe.
 
 use super::plates::{HullDrawing, RulingLine};
+use nalgebra::Point2;
 
 /// RFC 4180 §2: records end in CR LF.
 pub(super) const END_OF_RECORD: &str = "\r\n";
 
+/// A ruling in the flat pattern.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RollRow {
+    /// The piece of the pattern, counted from 1.
+    pub piece: usize,
+    /// Which ruling of the plate, counted from 0.
+    pub ruling: usize,
+    /// Its ends, measured along the piece's base line and across.
+    pub flat: [Point2<f64>; 2],
+    /// Angle from the base line, degrees.
+    pub angle_deg: f64,
+    /// Bend from here to the next ruling, degrees; positive: up.
+    pub bend_deg: f64,
+    /// Strain that its twist leaves, percent.
+    pub strain_percent: f64,
+}
+
 /// One record a ruling below one header record that carries the units; plates
-/// and rulings in the order of the drawing, rulings counted from 1.
-pub fn ruling_table(hull: &HullDrawing) -> String {
+/// and rulings in the order of the drawing, rulings counted from 1. `rolls` has
+/// the rows of each plate's flat pattern, none for a plate that has no pattern.
+#[must_use]
+pub fn roll_table(hull: &HullDrawing, rolls: &[Vec<RollRow>]) -> String {
     let mut table = header(&hull.units);
-    for plate in &hull.plates {
+    for (k, plate) in hull.plates.iter().enumerate() {
         let name = field(&harmless(&plate.name));
-        for (index, ruling) in plate.rulings.iter().enumerate() {
-            table.push_str(&record(&name, index + 1, ruling));
+        let rows = rolls.get(k).map_or(&[][..], Vec::as_slice);
+        if rows.is_empty() {
+            for (index, ruling) in plate.rulings.iter().enumerate() {
+                table.push_str(&record(&name, index + 1, ruling, None));
+            }
+        }
+        for row in rows {
+            if let Some(ruling) = plate.rulings.get(row.ruling) {
+                table.push_str(&record(&name, row.ruling + 1, ruling, Some(row)));
+            }
         }
     }
     table
@@ -40,12 +69,20 @@ fn header(units: &str) -> String {
         "twist (deg)".to_owned(),
         lengths("bend_radius_from"),
         lengths("bend_radius_to"),
+        "piece".to_owned(),
+        lengths("flat_from_x"),
+        lengths("flat_from_y"),
+        lengths("flat_to_x"),
+        lengths("flat_to_y"),
+        "angle_to_base_line (deg)".to_owned(),
+        "bend_up_to_next (deg)".to_owned(),
+        "strain (%)".to_owned(),
     ];
     columns.join(",") + END_OF_RECORD
 }
 
 /// One ruling, its plate's name already quoted.
-fn record(plate: &str, number: usize, ruling: &RulingLine) -> String {
+fn record(plate: &str, number: usize, ruling: &RulingLine, row: Option<&RollRow>) -> String {
     let RulingLine {
         u,
         from,
@@ -68,7 +105,27 @@ fn record(plate: &str, number: usize, ruling: &RulingLine) -> String {
         *bend_radius_from,
         *bend_radius_to,
     ];
-    let fields: Vec<String> = numbers.iter().map(|n| number_field(*n)).collect();
+    let mut fields: Vec<String> = numbers.iter().map(|n| number_field(*n)).collect();
+    let flat = row.map_or([f64::NAN; 7], |row| {
+        let [from, to] = row.flat;
+        let RollRow {
+            angle_deg,
+            bend_deg,
+            strain_percent,
+            ..
+        } = row;
+        [
+            from.x,
+            from.y,
+            to.x,
+            to.y,
+            *angle_deg,
+            *bend_deg,
+            *strain_percent,
+        ]
+    });
+    fields.push(row.map_or_else(String::new, |row| row.piece.to_string()));
+    fields.extend(flat.iter().map(|n| number_field(*n)));
     format!("{plate},{number},{}{END_OF_RECORD}", fields.join(","))
 }
 
@@ -131,25 +188,43 @@ mod tests {
 
     #[test]
     fn a_row_carries_the_ruling_and_its_length() {
-        let table = ruling_table(&hull("deck – chine", 12.5));
+        let table = roll_table(&hull("deck – chine", 12.5), &[]);
         let rows: Vec<&str> = table.split("\r\n").collect();
         assert!(rows[0].starts_with("plate,ruling,u,from_x (ft)"));
         assert_eq!(
             rows[1],
-            "deck – chine,1,0.1,1,2,3,4,6,3,5,-1.25,12.5,0.3333333333333333"
+            "deck – chine,1,0.1,1,2,3,4,6,3,5,-1.25,12.5,0.3333333333333333,,,,,,,,"
         );
         assert_eq!(rows[2], "", "the last record ends too");
         assert_eq!(rows[0].matches(',').count(), rows[1].matches(',').count());
     }
 
     #[test]
+    fn a_cut_ruling_has_a_row_for_either_piece() {
+        let row = |piece: usize, x: f64| RollRow {
+            piece,
+            ruling: 0,
+            flat: [Point2::new(x, 0.0), Point2::new(x, 5.0)],
+            angle_deg: 90.0,
+            bend_deg: -0.5,
+            strain_percent: 0.01,
+        };
+        let rolls = vec![vec![row(1, 7.0), row(2, 0.0)]];
+        let table = roll_table(&hull("a", 1.0), &rolls);
+        let rows: Vec<&str> = table.split("\r\n").collect();
+        assert!(rows[1].starts_with("a,1,0.1,") && rows[1].ends_with(",1,7,0,7,5,90,-0.5,0.01"));
+        assert!(rows[2].starts_with("a,1,0.1,") && rows[2].ends_with(",2,0,0,0,5,90,-0.5,0.01"));
+        assert_eq!(rows[0].matches(',').count(), rows[1].matches(',').count());
+    }
+
+    #[test]
     fn a_flat_place_has_no_radius() {
-        assert!(ruling_table(&hull("a", f64::INFINITY)).contains("-1.25,,0.33"));
+        assert!(roll_table(&hull("a", f64::INFINITY), &[]).contains("-1.25,,0.33"));
     }
 
     #[test]
     fn names_are_quoted_and_disarmed() {
-        assert!(ruling_table(&hull("a, \"b\"", 1.0)).contains("\"a, \"\"b\"\"\",1,"));
-        assert!(ruling_table(&hull("=1+1", 1.0)).contains("'=1+1,1,"));
+        assert!(roll_table(&hull("a, \"b\"", 1.0), &[]).contains("\"a, \"\"b\"\"\",1,"));
+        assert!(roll_table(&hull("=1+1", 1.0), &[]).contains("'=1+1,1,"));
     }
 }

@@ -7,7 +7,7 @@
 //! | module | writes | for whom |
 //! |---|---|---|
 //! | [`obj`] | triangles, watertight along shared chines | viewers, meshers, CAD |
-//! | [`csv`] | one row a ruling | spreadsheets, marking-off |
+//! | [`csv`] | the roll table, one row a ruling | spreadsheets, marking-off |
 //! | [`svg`] | the lines plan with the rulings coloured by twist | print, README, browser |
 //! | [`fair_curve`] | corrections of a faired curve (CSV), its plot (SVG) | loftsmen, print |
 //! | [`fair_surface`] | a trimmed mesh (OBJ), corrections (CSV), isophotes (SVG) | CAD, loftsmen, print |

@@ -1,7 +1,8 @@
 //! Flat patterns: as a page to look at, and as a drawing for the cutting
 //! table.
 
-use super::dxf::{self, Corner, Drawing, Entity, Layer, Version};
+pub use super::dxf::Corner;
+use super::dxf::{self, Drawing, Entity, Layer, Version};
 use super::length_unit::LengthUnit;
 use super::svg;
 use nalgebra::{Point2, Vector2};
@@ -25,8 +26,8 @@ pub struct PatternSheet {
     pub summary: Vec<String>,
 }
 
-/// A flat pattern, seen from the front.
-#[derive(Debug, Clone, PartialEq)]
+/// A flat pattern.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Pattern {
     /// What it is called: shown on the sheet.
     pub name: String,
@@ -40,6 +41,26 @@ pub struct Pattern {
     pub rulings: Vec<[Point2<f64>; 2]>,
     /// Words at places, for example the names of patches.
     pub labels: Vec<(Point2<f64>, String)>,
+    /// Its side that is seen.
+    pub side: &'static str,
+    /// The outline as it is cut, where arcs are nearer to it than straight lines
+    /// between a few corners; empty: as `outline` has it.
+    pub cut: Vec<Corner>,
+    /// Lines to mark and what they are, for example stations.
+    pub marks: Vec<Mark>,
+    /// Sentences that stand below the pattern on the cutting table's drawing.
+    pub notes: Vec<String>,
+    /// Whether it keeps its limits though others of the sheet do not.
+    pub within_limits: bool,
+}
+
+/// A line to mark.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// What it is.
+    pub name: String,
+    /// From place to place.
+    pub line: Vec<Point2<f64>>,
 }
 
 /// The patterns as an SVG page, all to one stated scale.
@@ -53,6 +74,10 @@ pub fn page(sheet: &PatternSheet) -> String {
 const GAP: f64 = 0.05;
 /// See [`GAP`].
 const LETTER: f64 = 0.015;
+/// Height of a mark's letters, of the others.
+const MARK_LETTER: f64 = 0.6;
+/// Distance of lines of text, of their letters' height.
+const LINE: f64 = 1.5;
 
 /// The patterns as a drawing for the cutting table, true to size, one above
 /// the other, each with its name; one that is outside its limits says so.
@@ -68,21 +93,23 @@ pub fn cutting_drawing(sheet: &PatternSheet, version: Version) -> String {
     };
     let letter = LETTER * longest;
     let mut top = 0.0;
+    let write = |drawing: &mut Drawing, top: &mut f64, text: String| {
+        *top -= LINE * letter;
+        let at = Point2::new(0.0, *top);
+        drawing.entities.push(words(at, letter, text));
+    };
     for (pattern, [low, high]) in sheet.patterns.iter().zip(&boxes) {
         let shift = Vector2::new(-low.x, top - high.y);
         drawing.entities.extend(entities(pattern, shift, letter));
-        let bottom = top - (high.y - low.y);
-        let at = Point2::new(0.0, bottom - 1.5 * letter);
-        drawing
-            .entities
-            .push(words(at, letter, sentence(sheet, pattern)));
-        top = bottom - GAP * longest - 1.5 * letter;
+        top -= high.y - low.y;
+        write(&mut drawing, &mut top, sentence(sheet, pattern));
+        for note in &pattern.notes {
+            write(&mut drawing, &mut top, note.clone());
+        }
+        top -= GAP * longest;
     }
     for line in &sheet.summary {
-        drawing
-            .entities
-            .push(words(Point2::new(0.0, top), letter, line.clone()));
-        top -= 1.5 * letter;
+        write(&mut drawing, &mut top, line.clone());
     }
     dxf::write(&drawing, version)
 }
@@ -90,19 +117,23 @@ pub fn cutting_drawing(sheet: &PatternSheet, version: Version) -> String {
 /// Name, side, and the verdict where it is bad: what must not get lost between
 /// the office and the shop.
 fn sentence(sheet: &PatternSheet, pattern: &Pattern) -> String {
-    let warning = if sheet.verdict == "outside_limits" {
+    let warning = if sheet.verdict == "outside_limits" && !pattern.within_limits {
         " - OUTSIDE LIMITS"
     } else {
         ""
     };
     format!(
-        "{} - {} - front side up - lengths in {}{warning}",
-        sheet.title, pattern.name, sheet.unit_name
+        "{} - {} - {} up - lengths in {}{warning}",
+        sheet.title, pattern.name, pattern.side, sheet.unit_name
     )
 }
 
 fn bounds(pattern: &Pattern) -> [Point2<f64>; 2] {
-    let corners = pattern.outline.iter().fold(None, |corners, p| {
+    let points = pattern
+        .outline
+        .iter()
+        .chain(pattern.cut.iter().map(|c| &c.at));
+    let corners = points.fold(None, |corners, p| {
         let [low, high] = corners.unwrap_or([*p, *p]);
         Some([low.inf(p), high.sup(p)])
     });
@@ -120,7 +151,20 @@ fn entities(pattern: &Pattern, shift: Vector2<f64>, letter: f64) -> Vec<Entity> 
             .collect(),
         closed,
     };
-    let mut entities = vec![polyline(Layer::Cut, &pattern.outline, true)];
+    let cut = if pattern.cut.is_empty() {
+        polyline(Layer::Cut, &pattern.outline, true)
+    } else {
+        let corners = pattern.cut.iter().map(|c| Corner {
+            at: c.at + shift,
+            bulge: c.bulge,
+        });
+        Entity::Polyline {
+            layer: Layer::Cut,
+            corners: corners.collect(),
+            closed: true,
+        }
+    };
+    let mut entities = vec![cut];
     if pattern.line.len() > 1 {
         entities.push(polyline(Layer::Frame, &pattern.line, false));
     }
@@ -128,6 +172,12 @@ fn entities(pattern: &Pattern, shift: Vector2<f64>, letter: f64) -> Vec<Entity> 
         layer: Layer::Roll,
         ends: ends.map(|p| p + shift),
     }));
+    for mark in &pattern.marks {
+        entities.push(polyline(Layer::Frame, &mark.line, false));
+        let at = mark.line.first();
+        let name = |at: &Point2<f64>| words(at + shift, MARK_LETTER * letter, mark.name.clone());
+        entities.extend(at.map(name));
+    }
     let labels = pattern.labels.iter();
     entities.extend(labels.map(|(at, text)| words(at + shift, letter, text.clone())));
     entities
@@ -157,6 +207,8 @@ mod tests {
             line: vec![outline[0], outline[1]],
             labels: vec![(outline[0], "A".into())],
             outline: outline.clone(),
+            side: "front",
+            ..Pattern::default()
         };
         PatternSheet {
             title: "net".into(),
@@ -194,6 +246,30 @@ mod tests {
         let mut empty = sheet("within_limits");
         empty.patterns.clear();
         assert!(page(&empty).contains(">none<"));
+    }
+
+    #[test]
+    fn arcs_marks_and_notes_stand_on_their_layers() {
+        let mut sheet = sheet("outside_limits");
+        let pattern = &mut sheet.patterns[0];
+        pattern.cut = (pattern.outline.iter())
+            .map(|at| Corner {
+                at: *at,
+                bulge: 0.25,
+            })
+            .collect();
+        pattern.marks = vec![Mark {
+            name: "x = 1".into(),
+            line: vec![Point2::new(1.0, 0.0), Point2::new(1.0, 1.0)],
+        }];
+        pattern.notes = vec!["Roll it cold.".into()];
+        pattern.within_limits = true;
+        let text = cutting_drawing(&sheet, Version::R2000);
+        assert_eq!(text.matches(" 42\r\n0.25\r\n").count(), 4);
+        assert!(text.contains("x = 1\r\n") && text.contains("Roll it cold."));
+        // Two base lines and the mark.
+        assert_eq!(text.matches("LWPOLYLINE\r\n").count(), 5);
+        assert_eq!(text.matches("OUTSIDE LIMITS").count(), 1);
     }
 
     #[test]

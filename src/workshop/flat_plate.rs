@@ -115,9 +115,12 @@ pub struct FlatFigures {
 
 /// Flattens a plate. `rulings` are the parameters of the rulings to list,
 /// increasing, from end to end. `None` where there is nothing of finite size to
-/// flatten.
+/// flatten, or no two rulings to flatten it between.
 #[must_use]
 pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Option<FlatPlate> {
+    if rulings.len() < 2 {
+        return None;
+    }
     let development = Development::new(plate)?;
     let (side, from_normal) = hull.side(plate, &breaks(plate));
     let job = Job {
@@ -142,10 +145,7 @@ pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Optio
 }
 
 /// Stations as chains of parameters.
-fn marks(
-    development: &Development<'_>,
-    hull: &HullFrame,
-) -> Vec<(f64, Vec<nalgebra::Vector2<f64>>)> {
+fn marks(development: &Development<'_>, hull: &HullFrame) -> Vec<(f64, Vec<Vector2<f64>>)> {
     let fields = development.fields(STATION_STEPS);
     let surface = development.surface();
     let stations = hull.stations().iter();
@@ -180,7 +180,8 @@ struct Placement {
 impl Placement {
     fn point(&self, p: &Point2<f64>) -> Point2<f64> {
         let arm = p - self.origin;
-        Point2::new(arm.dot(&self.right), arm.dot(&self.up))
+        // Zero, not minus zero, for those who read it.
+        Point2::new(arm.dot(&self.right) + 0.0, arm.dot(&self.up) + 0.0)
     }
 
     fn corner(&self, corner: &OutlineCorner) -> OutlineCorner {

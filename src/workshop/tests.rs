@@ -414,6 +414,7 @@ fn nothing_cannot_be_flattened() {
     let plate = ruled(line(spot, spot), line(spot, spot));
     let hull = HullFrame::around(std::slice::from_ref(&plate)).unwrap();
     assert!(flatten(&plate, &even(), &hull).is_none());
+    assert!(flatten(&twisted(), &[0.5], &hull).is_none());
     assert!(HullFrame::around(&[]).is_none());
 }
 

@@ -25,13 +25,15 @@ mod sample;
 mod text;
 mod views;
 
+use super::patterns::PatternSheet;
 use super::plates::{HullDrawing, bounds};
 use canvas::Canvas;
-use layout::PAGE_WIDTH;
+use layout::{MARGIN, PAGE_WIDTH};
 use page::Words;
 
-/// The whole page.
-pub fn lines_plan(hull: &HullDrawing) -> String {
+/// The lines plan, and below it the flat patterns of the plates.
+#[must_use]
+pub fn lines_plan(hull: &HullDrawing, flat: Option<&PatternSheet>) -> String {
     let mut canvas = Canvas::default();
     let words = Words {
         title: &hull.title,
@@ -52,6 +54,9 @@ pub fn lines_plan(hull: &HullDrawing) -> String {
             .map(layout::View::bottom)
             .fold(y, f64::max);
         y = legend::draw(&mut canvas, hull, bottom + 13.0, layout.views[0].scale);
+    }
+    if let Some(flat) = flat {
+        y = patterns::all(&mut canvas, flat, PAGE_WIDTH - 2.0 * MARGIN, y + 12.0);
     }
     y = page::sentences(&mut canvas, &words, y + 7.0);
     canvas.finish([PAGE_WIDTH, page::height(y)], &hull.title)
@@ -98,7 +103,7 @@ mod tests {
 
     #[test]
     fn the_page_shows_views_legend_and_words() {
-        let page = lines_plan(&hull(5.0));
+        let page = lines_plan(&hull(5.0), None);
         for expected in [
             "Profile (x–z)",
             "Plan (x–y)",
@@ -118,8 +123,8 @@ mod tests {
     #[test]
     fn twist_above_the_limit_is_red_and_heavy() {
         let heavy = format!("stroke=\"{}\" stroke-width=\"0.38\"", colour::ABOVE_LIMIT);
-        assert!(lines_plan(&hull(9.0)).contains(&heavy));
-        assert!(!lines_plan(&hull(5.0)).contains(&heavy));
+        assert!(lines_plan(&hull(9.0), None).contains(&heavy));
+        assert!(!lines_plan(&hull(5.0), None).contains(&heavy));
     }
 
     #[test]
@@ -127,16 +132,43 @@ mod tests {
         let mut empty = hull(1.0);
         empty.plates.clear();
         empty.profiles.clear();
-        assert!(lines_plan(&empty).contains("One plate."));
+        assert!(lines_plan(&empty, None).contains("One plate."));
         let mut broken = hull(f64::NAN);
         broken.plates[0].rulings[3].from.x = f64::INFINITY;
         broken.profiles[0].points[3].y = f64::NAN;
-        let page = lines_plan(&broken);
+        let page = lines_plan(&broken, None);
         assert!(!page.contains("NaN") && !page.contains("inf"));
     }
 
     #[test]
+    fn flat_patterns_stand_below_the_views() {
+        let corner = |x: f64, y: f64| nalgebra::Point2::new(x, y);
+        let pattern = super::super::patterns::Pattern {
+            name: "deck, flat".into(),
+            kind: "Flat patterns".into(),
+            outline: vec![corner(0.0, 0.0), corner(10.0, 0.0), corner(10.0, 2.0)],
+            ..Default::default()
+        };
+        let sheet = PatternSheet {
+            title: String::new(),
+            unit_name: "m".into(),
+            units: crate::formats::length_unit::LengthUnit::Metre,
+            patterns: vec![pattern],
+            none: "",
+            verdict: String::new(),
+            summary: Vec::new(),
+        };
+        let page = lines_plan(&hull(5.0), Some(&sheet));
+        assert!(page.contains(">deck, flat<") && page.contains("flat patterns, 1 : 50<"));
+        let tall = |page: &str| -> f64 {
+            let height = page.split("height=\"").nth(1).unwrap();
+            height.split("mm").next().unwrap().parse().unwrap()
+        };
+        assert!(tall(&page) > tall(&lines_plan(&hull(5.0), None)) + 40.0);
+    }
+
+    #[test]
     fn the_same_drawing_gives_the_same_bytes() {
-        assert_eq!(lines_plan(&hull(5.0)), lines_plan(&hull(5.0)));
+        assert_eq!(lines_plan(&hull(5.0), None), lines_plan(&hull(5.0), None));
     }
 }

@@ -16,8 +16,10 @@ const NAME_TYPE: f64 = 2.6;
 const KIND_TYPE: f64 = 4.0;
 /// Room between patterns, mm.
 const GAP: f64 = 4.0;
-/// The longest pattern is drawn no longer than this, mm.
+/// The longest pattern is drawn no longer than this, mm: two in a row.
 const LONGEST: f64 = 130.0;
+/// Colour of marks.
+const MARK: &str = "#4f9d5b";
 /// Colour of the rulings.
 const RULING: &str = "#7aa5c9";
 
@@ -31,23 +33,28 @@ pub(in crate::formats) fn page(drawing: &PatternSheet) -> String {
         good: drawing.verdict != "outside_limits",
         summary: &drawing.summary,
     };
-    let mut y = page::heading(&mut canvas, &words) + 9.0;
+    let y = page::heading(&mut canvas, &words) + 9.0;
+    let y = all(&mut canvas, drawing, LONGEST, y);
+    let y = page::sentences(&mut canvas, &words, y + 6.0);
+    canvas.finish([PAGE_WIDTH, page::height(y)], &drawing.title)
+}
+
+/// All patterns to one scale with its bar below `top`, none longer than
+/// `longest`; returns where they end, mm.
+pub(super) fn all(canvas: &mut Canvas, drawing: &PatternSheet, longest: f64, top: f64) -> f64 {
     let laid: Vec<(&Pattern, Laid)> = (drawing.patterns.iter())
         .map(|p| (p, Laid::of(p)))
         .collect();
     if laid.is_empty() {
-        canvas.text([MARGIN, y], plain(INK), drawing.none);
-        y += 8.0;
-    } else {
-        let unit_mm = 1000.0 * drawing.units.metres();
-        let denominator = scale_denominator(&laid, unit_mm);
-        let scale = unit_mm / denominator;
-        let remark = format!("flat patterns, 1 : {denominator}");
-        legend::scale_bar(&mut canvas, &drawing.unit_name, [y, scale], &remark);
-        y = shelves(&mut canvas, &laid, scale, y + 14.0);
+        canvas.text([MARGIN, top], plain(INK), drawing.none);
+        return top + 8.0;
     }
-    y = page::sentences(&mut canvas, &words, y + 6.0);
-    canvas.finish([PAGE_WIDTH, page::height(y)], &drawing.title)
+    let unit_mm = 1000.0 * drawing.units.metres();
+    let denominator = scale_denominator(&laid, unit_mm / longest);
+    let scale = unit_mm / denominator;
+    let remark = format!("flat patterns, 1 : {denominator}");
+    legend::scale_bar(canvas, &drawing.unit_name, [top, scale], &remark);
+    shelves(canvas, &laid, scale, top + 14.0)
 }
 
 fn plain(colour: &'static str) -> TextStyle {
@@ -60,10 +67,10 @@ fn plain(colour: &'static str) -> TextStyle {
 }
 
 /// N of the scale 1 : N, 1, 2 or 5 times a power of ten, at which the longest
-/// pattern is short enough.
-fn scale_denominator(laid: &[(&Pattern, Laid)], unit_mm: f64) -> f64 {
+/// pattern is short enough: a unit is so many times the room.
+fn scale_denominator(laid: &[(&Pattern, Laid)], unit: f64) -> f64 {
     let longest = laid.iter().fold(0.0, |m: f64, (_, l)| m.max(l.size[0]));
-    let least = (longest * unit_mm / LONGEST).max(f64::MIN_POSITIVE);
+    let least = (longest * unit).max(f64::MIN_POSITIVE);
     let decade = 10f64.powf(least.log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
     // A hair of slack: the decade itself is rounded.
@@ -187,6 +194,10 @@ fn draw(canvas: &mut Canvas, pattern: &Pattern, laid: &Laid, (corner, scale): (S
         .map(|r| [map(&r[0]), map(&r[1])])
         .collect();
     canvas.strokes(&rulings, stroke(RULING, 0.12));
+    for mark in &pattern.marks {
+        let line: Vec<Spot> = mark.line.iter().map(map).collect();
+        canvas.polyline(&line, stroke(MARK, 0.18));
+    }
     let line: Vec<Spot> = pattern.line.iter().map(map).collect();
     canvas.polyline(&line, stroke(GREY, 0.12));
     let closed = pattern.outline.iter().chain(pattern.outline.first());

@@ -1,11 +1,12 @@
 //! `hull_plates` as the HTTP layer knows it.
 
 use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
+use crate::formats::dxf::Version;
 use crate::formats::plates::HullDrawing;
-use crate::formats::{csv, obj, svg};
+use crate::formats::{csv, obj, patterns, svg};
 use crate::http::dto::Point;
 use crate::http::dto::hull_plates::{
-    HullPlatesInput, HullPlatesOptions, HullPlatesResult, ProfileCurve, to_request,
+    HullPlatesInput, HullPlatesOptions, HullPlatesResult, ProfileCurve, flat_patterns, to_request,
 };
 use crate::http::dto::job::{HullPlatesJob, Normalized};
 use crate::http::problem::{ApiError, FieldError};
@@ -30,7 +31,8 @@ const WORDS: Words = Words {
         ("verdict", "within_limits or outside_limits"),
         (
             "summary",
-            "One sentence for the job, then one a plate, with the reason",
+            "One sentence for the job, then one a plate, with the reason, then one on the flat \
+      patterns",
         ),
         (
             "surfaces",
@@ -40,6 +42,10 @@ const WORDS: Words = Words {
         (
             "method_specific.plates",
             "Rulings with twist and bend radii, fans, extensions",
+        ),
+        (
+            "method_specific.plates.flat",
+            "The flat pattern: outline, roll table, stations, strain, size of the sheet",
         ),
         (
             "method_specific.profiles",
@@ -80,6 +86,7 @@ impl Method for HullPlates {
             Format::Svg,
             Format::Step,
             Format::Igs,
+            Format::Dxf,
         ]
     }
 
@@ -97,10 +104,14 @@ impl Method for HullPlates {
         let drawing = HullDrawing::from(&document);
         match format {
             Format::Obj => Ok(obj::write(&drawing)),
-            Format::Csv => Ok(csv::ruling_table(&drawing)),
-            Format::Svg => Ok(svg::lines_plan(&drawing)),
+            Format::Csv => Ok(csv::roll_table(&drawing, &document.roll_rows())),
+            Format::Svg => Ok(svg::lines_plan(&drawing, Some(&document.pattern_sheet()))),
             Format::Step | Format::Igs => document.write_cad(format),
-            Format::Json | Format::Dxf => Err(ApiError::internal(&"no form to be written")),
+            Format::Dxf => Ok(patterns::cutting_drawing(
+                &document.pattern_sheet(),
+                Version::R2000,
+            )),
+            Format::Json => Err(ApiError::internal(&"no form to be written")),
         }
     }
 }
@@ -137,7 +148,9 @@ impl PlatesJob {
         control: &dyn Control,
     ) -> Result<Fitted, FitError> {
         let outcome = fit(&self.request, control)?;
-        Fitted::of(&HullPlatesResult::new(&self.job, input_sha256, &outcome))
+        let flats = flat_patterns(&outcome, control)?;
+        let result = HullPlatesResult::new(&self.job, input_sha256, &outcome, flats);
+        Fitted::of(&result)
     }
 }
 

@@ -120,6 +120,8 @@ impl ConeSplineResult {
             labels: (patches.iter().zip(rulings.windows(2)))
                 .map(|(p, pair)| (middle(&[flat(&pair[0]), flat(&pair[1])]), caption(p)))
                 .collect(),
+            side: "front side",
+            ..Pattern::default()
         }
     }
 }

@@ -171,7 +171,8 @@ fn pattern(name: String, kind: String, sheet: &SheetResult) -> Pattern {
             .collect(),
         line: sheet.line.iter().map(|p| (*p).into()).collect(),
         rulings: pairs.map(|(r, l)| [(*r).into(), (*l).into()]).collect(),
-        labels: Vec::new(),
+        side: "front side",
+        ..Pattern::default()
     }
 }
 

@@ -69,7 +69,7 @@ impl HullPlatesResult {
         cad::write(&model, format)
     }
 
-    fn title(&self) -> String {
+    pub(super) fn title(&self) -> String {
         self.label.clone().unwrap_or_else(|| UNTITLED.to_owned())
     }
 }

@@ -4,10 +4,13 @@
 
 mod diagnostics;
 mod drawing;
+mod flat;
+mod patterns;
 mod result;
 mod to_request;
 
 pub use diagnostics::{HullPlatesDiagnostics, PlateFigures};
+pub use flat::{PlateFlatResult, flat_patterns};
 pub use result::HullPlatesResult;
 pub use to_request::to_request;
 

@@ -4,7 +4,7 @@
 use super::super::curves::{NamedCurve, Point, Surface, finite};
 use super::super::job::{HullPlatesJob, HullPlatesMethod};
 use super::super::result::{Contents, result_of_a_method};
-use super::{HullPlatesDiagnostics, HullPlatesOptions};
+use super::{HullPlatesDiagnostics, HullPlatesOptions, PlateFlatResult, patterns};
 use crate::methods::hull_plates::outcome::{
     Deviation, Fan, MovedPoint, Outcome, OutcomeProfile, Plate, Ruling,
 };
@@ -19,7 +19,7 @@ result_of_a_method!(
     HullPlatesDiagnostics,
     about = "The result of a `hull_plates` job. Lengths in `units`.",
     verdict = "Whether every limit is kept.",
-    summary = "One sentence for the job, then one a plate.",
+    summary = "One sentence for the job, then one a plate, then one on the flat patterns.",
     surfaces = "The plates: degree `[3, 1]`, `v = 0` on the first profile, `v = 1` on\nthe second; control points indexed `[u][v]`.",
     curves = "The profiles as the plates use them; neighbours share theirs.",
     diagnostics = "All figures, measured on the delivered surfaces.",
@@ -51,6 +51,8 @@ pub struct PlateResult {
     /// end, second profile's start and end.
     #[schema(min_items = 4, max_items = 4, value_type = Vec<f64>)]
     pub extensions: [f64; 4],
+    /// The plate as it is cut and rolled; null if it has no size.
+    pub flat: Option<PlateFlatResult>,
 }
 
 /// One ruling.
@@ -124,12 +126,21 @@ pub struct MovedPointResult {
 }
 
 impl HullPlatesResult {
-    /// The result of a job out of its request and the method's outcome.
+    /// The result of a job out of its request, the method's outcome and the
+    /// flat patterns of its plates.
     #[must_use]
-    pub fn new(job: &HullPlatesJob, input_sha256: String, outcome: &Outcome) -> Self {
+    pub fn new(
+        job: &HullPlatesJob,
+        input_sha256: String,
+        outcome: &Outcome,
+        flats: Vec<Option<PlateFlatResult>>,
+    ) -> Self {
+        let mut summary = outcome.summary.clone();
+        summary.extend(patterns::sentence(&flats, job.units));
+        let plates = outcome.plates.iter().zip(flats);
         let contents = Contents {
             within_limits: outcome.within_limits,
-            summary: outcome.summary.clone(),
+            summary,
             warnings: outcome.warnings.clone(),
             surfaces: (outcome.plates.iter())
                 .map(|p| Surface::new(&p.name, "plate", &p.surface))
@@ -139,7 +150,7 @@ impl HullPlatesResult {
                 .collect(),
             method_specific: HullPlatesSpecific {
                 options: job.options.clone(),
-                plates: outcome.plates.iter().map(Into::into).collect(),
+                plates: plates.map(|(p, flat)| PlateResult::new(p, flat)).collect(),
                 profiles: outcome.profiles.iter().map(Into::into).collect(),
             },
             diagnostics: outcome.into(),
@@ -148,14 +159,15 @@ impl HullPlatesResult {
     }
 }
 
-impl From<&Plate> for PlateResult {
-    fn from(plate: &Plate) -> Self {
+impl PlateResult {
+    fn new(plate: &Plate, flat: Option<PlateFlatResult>) -> Self {
         PlateResult {
             name: plate.name.clone(),
             within_limits: plate.within_limits,
             rulings: plate.rulings.iter().map(Into::into).collect(),
             fans: plate.fans.iter().map(Into::into).collect(),
             extensions: plate.extensions,
+            flat,
         }
     }
 }
