@@ -214,7 +214,38 @@ async fn answers_keep_to_their_schemas() {
     let missing = service.get("/v1/methods/x").await;
     check(&document, "get", "/v1/methods/{name}", &missing);
     jobs_keep_to_their_schemas(&document, &service).await;
+    measurements_keep_to_their_schemas(&document, &service).await;
     results_keep_to_their_schemas(&document, &service).await;
+}
+
+async fn measurements_keep_to_their_schemas(document: &Value, service: &Service) {
+    let surface = |corner: Value| {
+        json!({
+            "degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
+            "control_points": [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], corner]],
+        })
+    };
+    let bodies = [
+        json!({"units": "m", "surfaces": [surface(json!([1, 1, 0.1]))],
+               "target": [{"name": "deck", "points": [[0, 0, 0]]}]}),
+        // Neither area nor size.
+        json!({"units": "m", "surfaces": [{
+            "degree": [1, 1], "knots": [[0, 0, 1, 1], [0, 0, 1, 1]],
+            "control_points": [[[1, 1, 1], [1, 1, 1]], [[1, 1, 1], [1, 1, 1]]],
+        }]}),
+        json!({"units": "m", "surfaces": [surface(json!([1, 1, null]))]}),
+        json!({"units": "m", "surfaces": []}),
+    ];
+    for body in bodies {
+        let answer = service.post("/v1/verify", body.to_string()).await;
+        check(document, "post", "/v1/verify", &answer);
+    }
+    check(
+        document,
+        "post",
+        "/v1/verify",
+        &service.post("/v1/verify", "{").await,
+    );
 }
 
 async fn jobs_keep_to_their_schemas(document: &Value, service: &Service) {

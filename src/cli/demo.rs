@@ -14,7 +14,7 @@ use thiserror::Error;
 /// The example that is posted.
 const EXAMPLE: &str = "/v1/examples/trawler";
 /// What is fetched of the result.
-const FORMATS: [&str; 6] = ["json", "svg", "obj", "csv", "step", "igs"];
+const FORMATS: [&str; 7] = ["json", "svg", "obj", "csv", "dxf", "step", "igs"];
 /// Asks for a job's end are repeated this often; each waits up to 55 s.
 const MOST_WAITS: usize = 6;
 /// At the end nothing is running that deserves more patience.
@@ -124,7 +124,7 @@ fn curl_lines(address: SocketAddr) -> String {
         "\nThe same by hand (while a service is up: `mouldloft demo --keep` or `mouldloft serve`):\n\
          \n  curl -s {base}{EXAMPLE} -o job.json\
          \n  curl -s '{base}/v1/jobs?wait=55' -H 'Content-Type: application/json' --data-binary @job.json\
-         \n  curl -s {base}/v1/jobs/ID/result.svg -o trawler.svg    # also .obj .csv .json\
+         \n  curl -s {base}/v1/jobs/ID/result.svg -o trawler.svg    # also .dxf .obj .csv .json\
          \n\nReference: {base}/docs"
     )
 }

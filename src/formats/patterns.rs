@@ -76,6 +76,8 @@ const GAP: f64 = 0.05;
 const LETTER: f64 = 0.015;
 /// Height of a mark's letters, of the others.
 const MARK_LETTER: f64 = 0.6;
+/// Letters in a line of text: about as long as the largest pattern.
+const LETTERS: usize = 90;
 /// Distance of lines of text, of their letters' height.
 const LINE: f64 = 1.5;
 
@@ -93,25 +95,43 @@ pub fn cutting_drawing(sheet: &PatternSheet, version: Version) -> String {
     };
     let letter = LETTER * longest;
     let mut top = 0.0;
-    let write = |drawing: &mut Drawing, top: &mut f64, text: String| {
-        *top -= LINE * letter;
-        let at = Point2::new(0.0, *top);
-        drawing.entities.push(words(at, letter, text));
+    let write = |drawing: &mut Drawing, top: &mut f64, text: &str| {
+        for line in lines(text) {
+            *top -= LINE * letter;
+            let at = Point2::new(0.0, *top);
+            drawing.entities.push(words(at, letter, line));
+        }
     };
     for (pattern, [low, high]) in sheet.patterns.iter().zip(&boxes) {
         let shift = Vector2::new(-low.x, top - high.y);
         drawing.entities.extend(entities(pattern, shift, letter));
         top -= high.y - low.y;
-        write(&mut drawing, &mut top, sentence(sheet, pattern));
+        write(&mut drawing, &mut top, &sentence(sheet, pattern));
         for note in &pattern.notes {
-            write(&mut drawing, &mut top, note.clone());
+            write(&mut drawing, &mut top, note);
         }
         top -= GAP * longest;
     }
     for line in &sheet.summary {
-        write(&mut drawing, &mut top, line.clone());
+        write(&mut drawing, &mut top, line);
     }
     dxf::write(&drawing, version)
+}
+
+/// A text in lines, broken between words.
+fn lines(text: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let longer = |line: &String| line.chars().count() + 1 + word.chars().count();
+        match lines.last_mut() {
+            Some(line) if longer(line) <= LETTERS => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// Name, side, and the verdict where it is bad: what must not get lost between
@@ -270,6 +290,14 @@ mod tests {
         // Two base lines and the mark.
         assert_eq!(text.matches("LWPOLYLINE\r\n").count(), 5);
         assert_eq!(text.matches("OUTSIDE LIMITS").count(), 1);
+    }
+
+    #[test]
+    fn long_sentences_are_broken_between_words() {
+        let text = "so many words ".repeat(20);
+        let broken = lines(&text);
+        assert!(broken.iter().all(|l| l.chars().count() <= LETTERS) && broken.len() == 4);
+        assert_eq!(broken.join(" "), text.trim());
     }
 
     #[test]

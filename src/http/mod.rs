@@ -43,6 +43,7 @@ mod layers;
 mod page;
 mod references;
 mod results;
+mod verify;
 
 pub use docs::Document;
 pub use engine::Engine;
@@ -125,6 +126,7 @@ fn all_routes() -> OpenApiRouter<Api> {
         .routes(routes!(results::result_igs))
         .routes(routes!(results::result_dxf))
         .routes(routes!(results::diagnostics))
+        .routes(routes!(verify::verify))
         .merge(methods::routes())
         .merge(examples::routes())
         .merge(page::routes())

@@ -28,6 +28,7 @@ use utoipa::{IntoResponses, OpenApi as _, PartialSchema, ToSchema};
         (name = "jobs", description = "Submit, follow and end jobs"),
         (name = "results", description = "What jobs leave"),
         (name = "methods", description = "What can be fitted, and ready-to-post jobs"),
+        (name = "checks", description = "Measure surfaces, whoever made them"),
         (name = "service", description = "Health, figures, this document"),
     ),
 )]
@@ -213,6 +214,8 @@ problem_sets! {
         Syntax, InvalidHeader, BodyTimeout, InvalidJob, KeyReused,
         QueueFull, StorageFull, Draining, StoreUnavailable,
     ];
+    /// What can go wrong when surfaces are measured.
+    Verifying = [Syntax, BodyTimeout, InvalidSurfaces];
     /// What can go wrong when jobs are listed.
     Listing = [StoreUnavailable];
     /// What can go wrong with one job.

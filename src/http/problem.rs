@@ -86,6 +86,8 @@ codes! {
     RangeNotSatisfiable = "range-not-satisfiable", "The range lies outside the file";
     /// The job breaks a rule.
     InvalidJob = "invalid-job", "The job is not valid";
+    /// Surfaces that break a rule; every fault names its place.
+    InvalidSurfaces = "invalid-surfaces", "The surfaces cannot be measured";
     /// The idempotency key belongs to another body.
     KeyReused = "idempotency-key-reused", "The idempotency key was used with another body";
     /// A bug; the log holds the details under the request id.
@@ -125,7 +127,9 @@ impl Code {
             Code::TooLarge => StatusCode::PAYLOAD_TOO_LARGE,
             Code::UnsupportedMediaType => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             Code::RangeNotSatisfiable => StatusCode::RANGE_NOT_SATISFIABLE,
-            Code::InvalidJob | Code::KeyReused => StatusCode::UNPROCESSABLE_ENTITY,
+            Code::InvalidJob | Code::InvalidSurfaces | Code::KeyReused => {
+                StatusCode::UNPROCESSABLE_ENTITY
+            }
             Code::Internal => StatusCode::INTERNAL_SERVER_ERROR,
             Code::QueueFull
             | Code::StorageFull

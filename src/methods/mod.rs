@@ -3,6 +3,7 @@
 
 pub mod cone_spline;
 pub mod curvature_net;
+pub mod diagnostics;
 pub mod fairing;
 pub mod hull_plates;
 mod words;

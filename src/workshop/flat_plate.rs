@@ -16,6 +16,8 @@ const STRAIN_STEPS: usize = 512;
 const STATION_STEPS: usize = 256;
 /// Station marks leave the station by no more than this share of the size.
 const MARK_TOLERANCE: f64 = 1e-5;
+/// A plate with less area than this share of its size squared is a line.
+const NO_AREA: f64 = 1e-12;
 /// A base line shorter than this share of the size gives no direction.
 const NO_BASE: f64 = 1e-6;
 /// How much finer than the table of rulings the pattern is rolled up: once as
@@ -114,7 +116,7 @@ pub struct FlatFigures {
 }
 
 /// Flattens a plate. `rulings` are the parameters of the rulings to list,
-/// increasing, from end to end. `None` where there is nothing of finite size to
+/// increasing, from end to end. `None` where there is nothing of finite area to
 /// flatten, or no two rulings to flatten it between.
 #[must_use]
 pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Option<FlatPlate> {
@@ -122,6 +124,11 @@ pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Optio
         return None;
     }
     let development = Development::new(plate)?;
+    let fields = development.fields(STRAIN_STEPS);
+    let surface_area = strain::surface_area(&development, &fields);
+    if !(surface_area > NO_AREA * size(plate) * size(plate)) {
+        return None;
+    }
     let (side, from_normal) = hull.side(plate, &breaks(plate));
     let job = Job {
         development: &development,
@@ -136,7 +143,7 @@ pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Optio
     let pieces: Vec<FlatPiece> = (overlap::pieces(&job.lines, job.size).into_iter())
         .map(|range| job.piece(range))
         .collect();
-    let figures = job.figures(&pieces);
+    let figures = job.figures(&pieces, &fields, surface_area);
     Some(FlatPlate {
         side,
         pieces,
@@ -297,15 +304,14 @@ impl Job<'_> {
         marks
     }
 
-    fn figures(&self, pieces: &[FlatPiece]) -> FlatFigures {
-        let fields = self.development.fields(STRAIN_STEPS);
-        let measured = strain::measure(self.development, &fields, self.size);
+    fn figures(&self, pieces: &[FlatPiece], fields: &[f64], surface_area: f64) -> FlatFigures {
+        let measured = strain::measure(self.development, fields, self.size);
         let surface = self.development.surface();
         let strains = fields.iter().map(|u| strain::across(&surface.ruling(*u)));
         let percent = |share: f64| 100.0 * share;
         let bends = pieces.iter().flat_map(|p| &p.rulings);
         FlatFigures {
-            surface_area: strain::surface_area(self.development, &fields),
+            surface_area,
             flat_area: pieces.iter().map(|p| p.area).sum(),
             boundary_lengths: self.edges.each_ref().map(Edge::length),
             boundary_strain_percent: percent(measured.edges),

@@ -415,6 +415,9 @@ fn nothing_cannot_be_flattened() {
     let hull = HullFrame::around(std::slice::from_ref(&plate)).unwrap();
     assert!(flatten(&plate, &even(), &hull).is_none());
     assert!(flatten(&twisted(), &[0.5], &hull).is_none());
+    // A line run through twice has a size, but no area.
+    let along = line(spot, point![5.0, 1.0, 2.0]);
+    assert!(flatten(&ruled(along.clone(), along), &even(), &hull).is_none());
     assert!(HullFrame::around(&[]).is_none());
 }
 

@@ -88,7 +88,7 @@ fn whole<'de, D: serde::Deserializer<'de>>(reader: D) -> Result<usize, D::Error>
 
 /// `None` for an infinite (or undefined) figure, which JSON cannot say.
 #[must_use]
-pub(super) fn finite(x: f64) -> Option<f64> {
+pub(in crate::http) fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
 }
 

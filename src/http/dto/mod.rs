@@ -15,6 +15,7 @@ pub mod job;
 pub mod mesh;
 pub mod result;
 pub mod surface_input;
+pub mod verify;
 
 pub use curves::{Point, Spline, Surface};
 pub use job::JobRequest;

@@ -161,8 +161,8 @@ pub fn names() -> Vec<&'static str> {
     METHODS.iter().map(|m| m.name()).collect()
 }
 
-/// The rule of a job, out of the schema that is published.
-fn rule_of<J: ToSchema>() -> Result<Rule, String> {
+/// The rule of a body, out of the schema that is published.
+pub(super) fn rule_of<J: ToSchema>() -> Result<Rule, String> {
     let mut schemas = Vec::new();
     J::schemas(&mut schemas);
     let components = schemas

@@ -5,7 +5,8 @@ use crate::geometry::RuledSurface;
 use crate::methods::hull_plates::outcome::{Outcome, Plate};
 use crate::methods::{Control, FitError};
 use crate::workshop::{
-    FlatPiece, FlatPlate, FlatRuling, HullFrame, OutlineCorner, Side, StationMark, flatten,
+    FlatFigures, FlatPiece, FlatPlate, FlatRuling, HullFrame, OutlineCorner, Side, StationMark,
+    flatten,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -149,7 +150,7 @@ pub struct RefoldResult {
     pub deviation: f64,
 }
 
-/// The flat patterns of all plates; `None` for one that has no size.
+/// The flat patterns of all plates; `None` for one that has no area.
 ///
 /// # Errors
 /// [`FitError::Stopped`] when `control` says so.
@@ -179,10 +180,6 @@ pub fn flat_patterns(
 impl PlateFlatResult {
     fn new(flat: &FlatPlate, station_axis: AxisWord) -> Self {
         let f = &flat.figures;
-        let refold = |(rulings, deviation): &(usize, f64)| RefoldResult {
-            rulings: *rulings,
-            deviation: *deviation,
-        };
         PlateFlatResult {
             side: match flat.side {
                 Side::Inside => SideWord::Inside,
@@ -193,22 +190,37 @@ impl PlateFlatResult {
             surface_area: f.surface_area,
             flat_area: f.flat_area,
             boundary_lengths: f.boundary_lengths,
-            strain: FlatStrainResult {
-                boundary_percent: f.boundary_strain_percent,
-                ruling_percent: f.ruling_strain_percent,
-                middle_percent: f.middle_strain_percent,
-                diagonal_percent: f.diagonal_strain_percent,
-                area_percent: 100.0 * (f.flat_area / f.surface_area - 1.0),
-                twist_percent: f.twist_strain_percent,
-            },
+            strain: f.into(),
             bend_deg: f.bend_deg,
-            refolds: f.refolds.iter().map(refold).collect(),
+            refolds: f.refolds.iter().map(Into::into).collect(),
         }
     }
 
     /// The distance from the plate that more rulings do not take away.
     pub(super) fn refold_deviation(&self) -> f64 {
         self.refolds.last().map_or(0.0, |r| r.deviation)
+    }
+}
+
+impl From<&FlatFigures> for FlatStrainResult {
+    fn from(f: &FlatFigures) -> Self {
+        FlatStrainResult {
+            boundary_percent: f.boundary_strain_percent,
+            ruling_percent: f.ruling_strain_percent,
+            middle_percent: f.middle_strain_percent,
+            diagonal_percent: f.diagonal_strain_percent,
+            area_percent: 100.0 * (f.flat_area / f.surface_area - 1.0),
+            twist_percent: f.twist_strain_percent,
+        }
+    }
+}
+
+impl From<&(usize, f64)> for RefoldResult {
+    fn from((rulings, deviation): &(usize, f64)) -> Self {
+        RefoldResult {
+            rulings: *rulings,
+            deviation: *deviation,
+        }
     }
 }
 

@@ -10,7 +10,7 @@ mod result;
 mod to_request;
 
 pub use diagnostics::{HullPlatesDiagnostics, PlateFigures};
-pub use flat::{PlateFlatResult, flat_patterns};
+pub use flat::{FlatStrainResult, PlateFlatResult, RefoldResult, flat_patterns};
 pub use result::HullPlatesResult;
 pub use to_request::to_request;
 

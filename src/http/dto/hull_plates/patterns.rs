@@ -179,7 +179,7 @@ pub(super) fn sentence(flats: &[Option<PlateFlatResult>], units: Units) -> Optio
         let pieces = flat.as_ref().map_or(0, |f| f.pieces.len());
         let plate = k + 1;
         match pieces {
-            0 => text.push_str(&format!("; plate {plate} has no size to be flattened")),
+            0 => text.push_str(&format!("; plate {plate} has no area to be flattened")),
             1 => {}
             _ => text.push_str(&format!(
                 "; plate {plate} is cut into {pieces} pieces, as it would lie on itself"

@@ -51,7 +51,7 @@ pub struct PlateResult {
     /// end, second profile's start and end.
     #[schema(min_items = 4, max_items = 4, value_type = Vec<f64>)]
     pub extensions: [f64; 4],
-    /// The plate as it is cut and rolled; null if it has no size.
+    /// The plate as it is cut and rolled; null if it has no area.
     pub flat: Option<PlateFlatResult>,
 }
 
