@@ -126,7 +126,7 @@ pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Optio
     let development = Development::new(plate)?;
     let fields = development.fields(STRAIN_STEPS);
     let surface_area = strain::surface_area(&development, &fields);
-    if !(surface_area > NO_AREA * size(plate) * size(plate)) {
+    if surface_area.is_nan() || surface_area <= NO_AREA * size(plate) * size(plate) {
         return None;
     }
     let (side, from_normal) = hull.side(plate, &breaks(plate));

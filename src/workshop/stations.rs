@@ -119,10 +119,10 @@ fn chains(mut links: BTreeMap<NetEdge, Vec<NetEdge>>) -> Vec<Vec<NetEdge>> {
         let mut chain = vec![start];
         let mut here = start;
         while let Some(next) = links.get_mut(&here).and_then(Vec::pop) {
-            if let Some(back) = links.get_mut(&next) {
-                if let Some(i) = back.iter().position(|e| *e == here) {
-                    back.swap_remove(i);
-                }
+            if let Some(back) = links.get_mut(&next)
+                && let Some(i) = back.iter().position(|e| *e == here)
+            {
+                back.swap_remove(i);
             }
             if links.get(&here).is_some_and(Vec::is_empty) {
                 links.remove(&here);
