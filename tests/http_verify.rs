@@ -139,3 +139,45 @@ async fn what_cannot_be_measured_is_refused_with_its_place() {
     }
     service.post("/v1/verify", "[").await.problem(400, "syntax");
 }
+
+#[tokio::test]
+async fn a_step_file_is_measured_like_its_result() {
+    let service = real_service().await;
+    let trawler = service.get("/v1/examples/trawler").await.json();
+    let place = service.done(&trawler).await;
+    let result = service.get(&format!("{place}/result.json")).await.json();
+    let step = service.get(&format!("{place}/result.step")).await;
+    let kind = [("content-type", "model/step")];
+    let answer = service
+        .post_with("/v1/verify?max_twist_deg=0.5", &kind, step.body.clone())
+        .await;
+    assert_eq!(answer.status, 200);
+    let from_step = answer.json();
+    let body = json!({
+        "units": result["units"], "surfaces": result["surfaces"], "max_twist_deg": 0.5,
+    });
+    let from_json = service.post("/v1/verify", body.to_string()).await.json();
+    assert_eq!(from_step["units"], "ft");
+    assert_eq!(from_step["joins"], from_json["joins"]);
+    assert_eq!(from_step["warnings"], json!([]));
+    for (a, b) in (from_step["surfaces"].as_array().unwrap().iter())
+        .zip(from_json["surfaces"].as_array().unwrap())
+    {
+        assert_eq!(a["ruled"]["within_limits"], false);
+        for figure in ["area", "total_curvature", "ruled"] {
+            assert_eq!(a[figure], b[figure], "{figure}");
+        }
+    }
+    let cut = step.body.slice(..step.body.len() / 2);
+    let problem = service
+        .post_with("/v1/verify", &kind, cut)
+        .await
+        .problem(422, "invalid-surfaces");
+    assert!(
+        problem["errors"][0]["pointer"]
+            .as_str()
+            .unwrap()
+            .starts_with("file, line "),
+        "{problem}"
+    );
+}

@@ -9,6 +9,7 @@ use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
 use bytes::Bytes;
 use http_body_util::{BodyExt, LengthLimitError, Limited};
+use std::borrow::Cow;
 use std::error::Error;
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -119,31 +120,46 @@ impl Limits {
 }
 
 fn require_json(headers: &HeaderMap) -> Result<(), ApiError> {
-    let given = headers
-        .get(header::CONTENT_TYPE)
-        .map(|v| String::from_utf8_lossy(v.as_bytes()));
-    let kind = given.as_deref().unwrap_or_default();
-    let essence = kind
-        .split(';')
-        .next()
-        .unwrap_or_default()
-        .trim()
-        .to_ascii_lowercase();
-    let is_json = essence == "application/json"
-        || (essence.starts_with("application/") && essence.ends_with("+json"));
-    if is_json {
-        return Ok(());
+    if is_json(&media_type(headers)) {
+        Ok(())
+    } else {
+        Err(wrong_type(headers, &["application/json"]))
     }
-    let found = if kind.is_empty() {
+}
+
+/// The media type of a body in small letters, without parameters; empty where
+/// none is given.
+pub fn media_type(headers: &HeaderMap) -> String {
+    let given = content_type(headers);
+    let essence = given.split(';').next().unwrap_or_default();
+    essence.trim().to_ascii_lowercase()
+}
+
+/// Whether a media type is one of JSON.
+pub fn is_json(essence: &str) -> bool {
+    essence == "application/json"
+        || (essence.starts_with("application/") && essence.ends_with("+json"))
+}
+
+fn content_type(headers: &HeaderMap) -> Cow<'_, str> {
+    let given = headers.get(header::CONTENT_TYPE);
+    given.map_or_else(Cow::default, |v| String::from_utf8_lossy(v.as_bytes()))
+}
+
+/// The refusal of a body's type, with those that are taken.
+pub fn wrong_type(headers: &HeaderMap, taken: &[&str]) -> ApiError {
+    let given = content_type(headers);
+    let found = if given.is_empty() {
         "none is given".into()
     } else {
-        format!("it is {kind:?}")
+        format!("it is {given:?}")
     };
+    let taken = taken.join(" or ");
     let error = FieldError::new("Content-Type", "unsupported-media-type", found.clone())
-        .hint("send Content-Type: application/json");
+        .hint(format!("send Content-Type: {taken}"));
     let mut problem = ApiError::at(Code::UnsupportedMediaType, vec![error]);
-    problem.detail = format!("the Content-Type must be application/json, {found}");
-    Err(problem)
+    problem.detail = format!("the Content-Type must be {taken}, {found}");
+    problem
 }
 
 fn body_error(error: &(dyn Error + 'static), limits: Limits) -> ApiError {
@@ -303,6 +319,23 @@ impl Given {
                 None
             }
         }
+    }
+
+    /// A number above 0, no larger than a bound.
+    pub fn positive(&mut self, name: &str, most: f64) -> Option<f64> {
+        let text = self.text(name)?;
+        let number = text.parse().ok();
+        let number = number.filter(|x: &f64| *x > 0.0 && *x <= most && x.is_finite());
+        if number.is_none() {
+            let bound = if most.is_finite() {
+                format!(", at most {most}")
+            } else {
+                String::new()
+            };
+            let message = format!("\"{name}\" must be a number above 0{bound}");
+            self.fault(name, &text, message);
+        }
+        number
     }
 
     /// `true` or `false`.

@@ -1,25 +1,29 @@
 //! Measuring surfaces, whoever made them.
 
+use super::Api;
 use super::dto::curves::finite;
 use super::dto::verify::{
     DirectionWord, EdgeName, EdgeWord, FlatFigures, JoinFigures, RuledFigures, SurfaceFigures,
-    TargetFigures, Verification, VerifyRequest,
+    TargetFigures, Verification, VerifyRequest, usual_name,
 };
-use super::extract::{Asked, JsonBody, Nothing, Owner};
+use super::extract::{self, Asked, Owner, Parameters, is_json, media_type, whole_body, wrong_type};
 use super::methods::rule_of;
-use super::openapi::Verifying;
+use super::openapi::{RawBytes, Verifying};
 use super::problem::{ApiError, Code, FieldError, Success};
 use super::respond;
 use super::schema_check::Rule;
 use super::strict_json;
+use crate::formats::step_in;
 use crate::geometry::{Axis, BSplineSurface, BoundingBox, RuledSurface, Tolerance};
 use crate::methods::diagnostics::joins::{self, Edge, Join, Side};
 use crate::methods::diagnostics::{ruling, shape, strays};
 use crate::workshop::{HullFrame, flatten};
+use axum::extract::{FromRequest, Request};
 use axum::response::Response;
 use bytes::Bytes;
 use std::sync::LazyLock;
 use tokio::sync::Semaphore;
+use utoipa::IntoParams;
 
 /// The largest twist when nothing is said, degrees.
 const USUAL_TWIST_DEG: f64 = 6.0;
@@ -33,15 +37,79 @@ static RULE: LazyLock<Result<Rule, String>> = LazyLock::new(rule_of::<VerifyRequ
 /// One at a time: fits come first.
 static TURN: Semaphore = Semaphore::const_new(1);
 
+/// Surfaces to be measured, as they came.
+#[derive(Debug, Clone)]
+pub(super) enum Given {
+    /// As JSON.
+    Json(Bytes),
+    /// As a STEP file.
+    Step(Bytes),
+}
+
+/// Media types under which STEP files travel.
+const STEP: [&str; 4] = [
+    "model/step",
+    "application/step",
+    "application/p21",
+    "application/x-step",
+];
+
+impl FromRequest<Api> for Given {
+    type Rejection = ApiError;
+
+    async fn from_request(request: Request, api: &Api) -> Result<Self, ApiError> {
+        let kind = media_type(request.headers());
+        let wrap = if is_json(&kind) {
+            Given::Json
+        } else if STEP.contains(&kind.as_str()) {
+            Given::Step
+        } else {
+            return Err(wrong_type(
+                request.headers(),
+                &["application/json", STEP[0]],
+            ));
+        };
+        whole_body(request, api).await.map(wrap)
+    }
+}
+
+/// What is asked, where a STEP file cannot say it.
+#[derive(Debug, Clone, Copy, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct VerifyQuery {
+    /// The largest twist that a ruled surface may have, degrees; goes before
+    /// that of the body.
+    #[param(nullable = false, exclusive_minimum = 0, maximum = 45)]
+    max_twist_deg: Option<f64>,
+    /// Edges no further apart are joined; a length, goes before that of the
+    /// body.
+    #[param(nullable = false, exclusive_minimum = 0)]
+    join_tolerance: Option<f64>,
+}
+
+impl Parameters for VerifyQuery {
+    const KNOWN: &'static [&'static str] = &["max_twist_deg", "join_tolerance"];
+
+    fn read(given: &mut extract::Given) -> Self {
+        VerifyQuery {
+            max_twist_deg: given.positive("max_twist_deg", 45.0),
+            join_tolerance: given.positive("join_tolerance", f64::MAX),
+        }
+    }
+}
+
 /// Measure surfaces
 ///
 /// An independent diagnosis of surfaces from here or anywhere: curvature of
 /// each; twist and what flattening does to those that are ruled; gaps and angles
 /// where edges meet; distances of points from the edges. The `surfaces` of a
-/// result can be sent as they are.
+/// result can be sent as they are, or a STEP file, of which the B-spline
+/// surfaces are measured whole.
 #[utoipa::path(
     post, path = "/v1/verify", tag = "checks", operation_id = "verify",
-    request_body(description = "The surfaces", content((VerifyRequest = "application/json"))),
+    params(VerifyQuery),
+    request_body(description = "The surfaces",
+        content((VerifyRequest = "application/json"), (inline(RawBytes) = "model/step"))),
     responses(
         (status = 200, description = "What was measured", body = Verification),
         Verifying,
@@ -49,14 +117,21 @@ static TURN: Semaphore = Semaphore::const_new(1);
 )]
 pub(super) async fn verify(
     _owner: Owner,
-    _asked: Asked<Nothing>,
-    JsonBody(body): JsonBody,
+    Asked(query): Asked<VerifyQuery>,
+    given: Given,
 ) -> Result<Response, ApiError> {
     let turn = TURN.acquire().await.map_err(|e| ApiError::internal(&e))?;
     // The turn ends with the work, also where the asker has gone.
     let work = move || {
         let _turn = turn;
-        read(&body).map(|(request, surfaces)| measure(&request, &surfaces))
+        let (mut request, warnings) = match given {
+            Given::Json(body) => (read(&body)?, Vec::new()),
+            Given::Step(body) => read_step(&body)?,
+        };
+        request.max_twist_deg = query.max_twist_deg.or(request.max_twist_deg);
+        request.join_tolerance = query.join_tolerance.or(request.join_tolerance);
+        let surfaces = request.surfaces().map_err(refused)?;
+        Ok::<_, ApiError>(measure(&request, &surfaces, warnings))
     };
     match tokio::task::spawn_blocking(work).await {
         Ok(measured) => Ok(respond::json(Success::Here, &measured?)),
@@ -64,22 +139,58 @@ pub(super) async fn verify(
     }
 }
 
-fn read(body: &Bytes) -> Result<(VerifyRequest, Vec<BSplineSurface>), ApiError> {
+fn refused(faults: Vec<FieldError>) -> ApiError {
+    ApiError::at(Code::InvalidSurfaces, faults)
+}
+
+/// The surfaces of a STEP file, and what is not measured of it.
+fn read_step(body: &Bytes) -> Result<(VerifyRequest, Vec<String>), ApiError> {
+    let step = step_in::read(body).map_err(|e| {
+        let fault = FieldError::new(e.pointer(), "step", e.to_string());
+        refused(vec![fault.hint(e.hint())])
+    })?;
+    let trimmed = step
+        .surfaces
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| s.is_trimmed);
+    let mut warnings: Vec<String> = trimmed
+        .map(|(i, s)| {
+            let name = s.name.clone().unwrap_or_else(|| usual_name(i));
+            format!("{name}: its face is only a part of the surface, which is measured whole")
+        })
+        .collect();
+    warnings.extend(step.left_out.iter().map(|(kind, count)| {
+        format!("faces on {kind} are not measured, only those on B-spline surfaces: {count}")
+    }));
+    if step.is_assembly {
+        warnings.push(
+            "parts are placed by transformations, which are not followed: joins between parts \
+             are not found"
+                .to_owned(),
+        );
+    }
+    let request = VerifyRequest::of_step(step).map_err(refused)?;
+    Ok((request, warnings))
+}
+
+fn read(body: &Bytes) -> Result<VerifyRequest, ApiError> {
     let value = strict_json::parse(body).map_err(|e| ApiError::at(Code::Syntax, vec![e]))?;
     let rule = RULE.as_ref().map_err(|e| ApiError::internal(e))?;
-    let refused = |faults| ApiError::at(Code::InvalidSurfaces, faults);
     let faults = rule.faults(&value);
     if !faults.is_empty() {
         return Err(refused(faults));
     }
     // The schema has passed, so this would be a gap between schema and type.
-    let request: VerifyRequest = serde_json::from_value(value)
-        .map_err(|e| refused(vec![FieldError::new("", "invalid", e.to_string())]))?;
-    let surfaces = request.surfaces().map_err(refused)?;
-    Ok((request, surfaces))
+    serde_json::from_value(value)
+        .map_err(|e| refused(vec![FieldError::new("", "invalid", e.to_string())]))
 }
 
-fn measure(request: &VerifyRequest, surfaces: &[BSplineSurface]) -> Verification {
+fn measure(
+    request: &VerifyRequest,
+    surfaces: &[BSplineSurface],
+    warnings: Vec<String>,
+) -> Verification {
     let limit = request.max_twist_deg.unwrap_or(USUAL_TWIST_DEG);
     let figures: Vec<SurfaceFigures> = (surfaces.iter().enumerate())
         .map(|(i, s)| surface_figures(request.name(i), s, limit))
@@ -91,6 +202,7 @@ fn measure(request: &VerifyRequest, surfaces: &[BSplineSurface]) -> Verification
     let mut verification = Verification {
         units: request.units,
         summary: Vec::new(),
+        warnings,
         surfaces: figures,
         joins: found.iter().map(|j| join_figures(j, &edges)).collect(),
         open_edges: (0..edges.len())

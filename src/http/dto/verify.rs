@@ -5,6 +5,7 @@ use super::hull_plates::{FlatStrainResult, RefoldResult};
 use super::index::{Index, IndexPair};
 use super::job::Units;
 use super::surface_input::SurfaceInput;
+use crate::formats::step_in::{StepReading, StepSurface};
 use crate::geometry::BSplineSurface;
 use crate::http::problem::FieldError;
 use nalgebra::Point3;
@@ -73,6 +74,11 @@ pub struct VerifyTarget {
     pub points: Vec<Point>,
 }
 
+const UNITS: [Units; 5] = [Units::Mm, Units::Cm, Units::M, Units::In, Units::Ft];
+/// Units of a file that differ by less than this share are one: a surveyor's
+/// foot is none of ours.
+const SAME_UNIT: f64 = 1e-9;
+
 /// What was measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct Verification {
@@ -80,6 +86,9 @@ pub struct Verification {
     pub units: Units,
     /// What it comes to, in sentences.
     pub summary: Vec<String>,
+    /// What was not looked at: faces of a STEP file that are on no B-spline
+    /// surface, trims.
+    pub warnings: Vec<String>,
     /// One a surface.
     pub surfaces: Vec<SurfaceFigures>,
     /// Edges that meet along all of their length.
@@ -219,10 +228,55 @@ pub struct TargetFigures {
     pub distance_mean: Option<f64>,
 }
 
+/// Surfaces that are measured in one request, at the most.
+const MOST_SURFACES: usize = 100;
 /// Control points that are measured in one request, at the most.
 const MOST_CONTROL_POINTS: usize = 50_000;
 
 impl VerifyRequest {
+    /// The surfaces of a STEP file, in its unit, or in metres where that is none
+    /// of ours.
+    ///
+    /// # Errors
+    /// More surfaces than are measured at a time.
+    pub fn of_step(step: StepReading) -> Result<Self, Vec<FieldError>> {
+        let found = step.surfaces.len();
+        if found > MOST_SURFACES {
+            let message = format!(
+                "the file has {found} surfaces, at most {MOST_SURFACES} are measured at a time"
+            );
+            return Err(vec![FieldError::new("file", "too-many", message)]);
+        }
+        let own = UNITS.into_iter();
+        let own = own.min_by(|a, b| {
+            let off = |unit: &Units| (unit.metres() / step.metres).ln().abs();
+            off(a).total_cmp(&off(b))
+        });
+        let own = own.filter(|unit| (unit.metres() / step.metres - 1.0).abs() < SAME_UNIT);
+        let (units, scale) = own.map_or((Units::M, step.metres), |unit| (unit, 1.0));
+        let surface = |s: StepSurface| VerifySurface {
+            name: s.name,
+            role: None,
+            degree: s.surface.degrees().map(Index),
+            knots: s.surface.knots().clone(),
+            control_points: (s.surface.control_points())
+                .chunks(s.surface.counts()[1])
+                .map(|row| row.iter().map(|p| (p * scale).into()).collect())
+                .collect(),
+            weights: s.surface.weights().map(|w| {
+                let rows = w.chunks(s.surface.counts()[1]);
+                rows.map(<[f64]>::to_vec).collect()
+            }),
+        };
+        Ok(VerifyRequest {
+            units,
+            surfaces: step.surfaces.into_iter().map(surface).collect(),
+            target: Vec::new(),
+            max_twist_deg: None,
+            join_tolerance: None,
+        })
+    }
+
     /// The surfaces.
     ///
     /// # Errors
@@ -259,8 +313,14 @@ impl VerifyRequest {
     #[must_use]
     pub fn name(&self, surface: usize) -> String {
         let given = self.surfaces.get(surface).and_then(|s| s.name.clone());
-        given.unwrap_or_else(|| format!("surface {}", surface + 1))
+        given.unwrap_or_else(|| usual_name(surface))
     }
+}
+
+/// What a surface is called that has no name.
+#[must_use]
+pub fn usual_name(surface: usize) -> String {
+    format!("surface {}", surface + 1)
 }
 
 impl VerifySurface {
