@@ -39,6 +39,9 @@ pub struct Pattern {
     pub line: Vec<Point2<f64>>,
     /// Rulings: lines to bend over.
     pub rulings: Vec<[Point2<f64>; 2]>,
+    /// Twist of each ruling as a share of the limit, by which the page colours
+    /// it; empty: all one colour.
+    pub twist_shares: Vec<f64>,
     /// Words at places, for example the names of patches.
     pub labels: Vec<(Point2<f64>, String)>,
     /// Its side that is seen.

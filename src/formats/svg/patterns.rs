@@ -2,6 +2,7 @@
 //! by kind, the way they would be nested on a table.
 
 use super::canvas::{Anchor, Canvas, Spot, Stroke, TextStyle};
+use super::colour;
 use super::layout::{MARGIN, PAGE_WIDTH};
 use super::legend;
 use super::page::{self, Words};
@@ -187,13 +188,38 @@ fn shelf(canvas: &mut Canvas, row: &[(&Pattern, &Laid, f64)], scale: f64, top: f
     base + GAP
 }
 
+/// A share of the limit in as many steps as the eye tells apart; above it stays
+/// above.
+fn step_of(share: f64) -> f64 {
+    const STEPS: f64 = 32.0;
+    if share > 1.0 {
+        2.0
+    } else {
+        (share * STEPS).round() / STEPS
+    }
+}
+
 fn draw(canvas: &mut Canvas, pattern: &Pattern, laid: &Laid, (corner, scale): (Spot, f64)) {
     let map = |p: &Point2<f64>| laid.map(p, corner, scale);
     let stroke = |colour, width| Stroke { colour, width };
     let rulings: Vec<[Spot; 2]> = (pattern.rulings.iter())
         .map(|r| [map(&r[0]), map(&r[1])])
         .collect();
-    canvas.strokes(&rulings, stroke(RULING, 0.12));
+    if pattern.twist_shares.len() == rulings.len() {
+        let colour = |i: &usize| step_of(pattern.twist_shares[*i]);
+        let all: Vec<usize> = (0..rulings.len()).collect();
+        for run in all.chunk_by(|a, b| colour(a) == colour(b)) {
+            let lines: Vec<[Spot; 2]> = run.iter().map(|i| rulings[*i]).collect();
+            let ink = colour::of_share(colour(&run[0]));
+            let stroke = Stroke {
+                colour: &ink,
+                width: 0.15,
+            };
+            canvas.strokes(&lines, stroke);
+        }
+    } else {
+        canvas.strokes(&rulings, stroke(RULING, 0.12));
+    }
     for mark in &pattern.marks {
         let line: Vec<Spot> = mark.line.iter().map(map).collect();
         canvas.polyline(&line, stroke(MARK, 0.18));

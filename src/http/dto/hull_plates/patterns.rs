@@ -51,10 +51,21 @@ impl HullPlatesResult {
                     _ => format!("{}, piece {} of {count}", plate.name, i + 1),
                 },
                 notes: notes(piece),
+                twist_shares: self.twist_shares(plate, piece),
                 within_limits: plate.within_limits,
                 ..pattern(flat, piece)
             })
             .collect()
+    }
+
+    /// Twist of the rulings of a piece, of the limit.
+    fn twist_shares(&self, plate: &PlateResult, piece: &FlatPieceResult) -> Vec<f64> {
+        let limit = self.method_specific.options.max_twist_deg;
+        let twist = |r: &FlatRulingResult| {
+            let ruling = plate.rulings.get(r.ruling);
+            ruling.map_or(0.0, |r| r.twist_deg.abs() / limit)
+        };
+        piece.rulings.iter().map(twist).collect()
     }
 
     /// The rows of each plate's roll table.
