@@ -267,8 +267,14 @@ pub struct FitSettings {
 /// A file that a result can be written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum FileFormat {
-    /// Triangles, watertight along the chines.
+    /// Triangles, watertight along shared borders.
     Obj,
+    /// Triangles alone.
+    Stl,
+    /// Triangles with colours and values.
+    Ply,
+    /// A scene with named parts, colours, values and lines.
+    Glb,
     /// The table of rulings.
     Csv,
     /// The lines plan.

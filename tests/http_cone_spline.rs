@@ -199,7 +199,7 @@ async fn every_file_can_be_had() {
     assert!(dxf.contains("ROLL") && dxf.contains("CUT"));
     let again = service.get(&format!("{place}/result.json")).await;
     assert_eq!(again.json(), result);
-    let none = service.get(&format!("{place}/result.glb")).await;
+    let none = service.get(&format!("{place}/result.dwg")).await;
     assert!(none.status == StatusCode::NOT_FOUND);
 }
 

@@ -170,7 +170,7 @@ async fn the_files_are_written() {
         String::from_utf8(answer.body.to_vec()).unwrap()
     };
     let obj = text(service.get(&format!("{place}/result.obj")).await);
-    assert!(obj.contains("\no cyclide_spline\n") && obj.contains("\no offset_-0.05\n"));
+    assert!(obj.contains("\no patch_0,0\n") && obj.contains("\no offset_-0.05,_patch_0,0\n"));
     let csv = text(service.get(&format!("{place}/result.csv")).await);
     // 4 rings of 5 and 5 lines of 8 arcs, and the header.
     assert_eq!(csv.lines().count(), 1 + 8 * 4 + 5 * 8);

@@ -9,14 +9,18 @@ use axum::http::{Method, StatusCode};
 use http_support::{idle_service, job, real_service, service};
 use serde_json::{Value, json};
 
-const FORMATS: [(&str, &str); 7] = [
+const FORMATS: [(&str, &str); 11] = [
     ("json", "application/json"),
     ("obj", "model/obj"),
+    ("stl", "model/stl"),
+    ("ply", "application/x-ply"),
+    ("glb", "model/gltf-binary"),
     ("csv", "text/csv; charset=utf-8"),
     ("svg", "image/svg+xml"),
     ("step", "model/step"),
     ("igs", "model/iges"),
     ("dxf", "image/vnd.dxf"),
+    ("zip", "application/zip"),
 ];
 
 #[tokio::test]
@@ -155,7 +159,7 @@ async fn unknown_formats_name_the_known() {
     let problem = problem.problem(404, "format-not-available");
     assert_eq!(
         problem["detail"],
-        "there is no result.dwg; there are json, obj, csv, svg, step, igs, dxf"
+        "there is no result.dwg; there are json, obj, stl, ply, glb, csv, svg, step, igs, dxf, zip"
     );
 }
 
@@ -324,7 +328,7 @@ async fn plates_come_with_flat_patterns_and_roll_tables() {
     }
     assert_eq!(dxf.matches("LIMITS MET. Plate").count(), 3);
     assert_eq!(dxf.matches("inside up - lengths in ft").count(), 3);
-    assert!(dxf.contains("\r\nx = 35\r\n"), "a station");
+    assert!(dxf.contains("\r\nx = 35 ft\r\n"), "a station");
 
     let csv = file("csv").await;
     let mut rows = csv.lines();
@@ -369,4 +373,145 @@ async fn plates_come_with_flat_patterns_and_roll_tables() {
     );
     let svg = file("svg").await;
     assert!(svg.contains("flat patterns, 1 : 100<") && svg.contains("Body (y–z)"));
+#[tokio::test]
+async fn units_scale_the_file_and_what_it_says_of_them() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let text = async |query: &str| {
+        let answer = service.get(&format!("{place}/result.{query}")).await;
+        assert_eq!(answer.status, StatusCode::OK, "{query}");
+        String::from_utf8_lossy(&answer.body).into_owned()
+    };
+    // A vertex at (2, 0, 0.5) m.
+    assert!(text("obj").await.contains("\nv 2 0 0.5\n"));
+    let mm = text("obj?units=mm").await;
+    assert!(mm.contains("# lengths in mm") && mm.contains("\nv 2000 0 500\n"));
+    assert_eq!(text("obj?units=m").await, text("obj").await);
+    assert!(text("stl?units=in").await.starts_with("lengths in in; "));
+    assert!(
+        text("ply?units=ft")
+            .await
+            .contains("comment lengths in ft; ")
+    );
+    assert!(text("glb?units=cm").await.contains("\"units\":\"cm\""));
+    assert!(text("csv?units=mm").await.starts_with("plate,ruling"));
+    assert!(text("csv?units=mm").await.contains("(mm)"));
+    assert!(
+        text("step?units=mm")
+            .await
+            .contains("SI_UNIT(.MILLI.,.METRE.)")
+    );
+    assert!(text("igs?units=in").await.contains("2HIN"));
+    assert!(text("svg?units=ft").await.contains("ft"));
+}
+
+#[tokio::test]
+async fn every_variant_has_its_own_tag_and_ranges() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let mut tags = std::collections::HashSet::new();
+    for variant in ["obj", "obj?units=mm", "obj?units=ft", "stl", "stl?units=mm"] {
+        let path = format!("{place}/result.{variant}");
+        let whole = service.get(&path).await;
+        let tag = whole.header("etag").to_owned();
+        assert!(tags.insert(tag.clone()), "{variant}");
+        let range = [("range", "bytes=5-8"), ("if-range", tag.as_str())];
+        let part = service.get_with(&path, &range).await;
+        assert_eq!(part.status, StatusCode::PARTIAL_CONTENT, "{variant}");
+        assert_eq!(part.body, whole.body.slice(5..9));
+        let same = service.get_with(&path, &[("if-none-match", &tag)]).await;
+        assert_eq!(same.status, StatusCode::NOT_MODIFIED);
+    }
+}
+
+#[tokio::test]
+async fn strange_units_and_versions_are_named() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    for (query, pointer, code) in [
+        ("result.obj?units=yd", "?units", "invalid-parameter"),
+        ("result.obj?units=", "?units", "invalid-parameter"),
+        ("result.obj?unit=mm", "?unit", "unknown-parameter"),
+        ("result.step?version=r12", "?version", "unknown-parameter"),
+        ("result.dxf?version=r13", "?version", "invalid-parameter"),
+        ("result.json?units=mm", "?units", "unknown-parameter"),
+        ("result.zip?units=mm", "?units", "unknown-parameter"),
+        (
+            "artifacts/result.json?units=mm",
+            "?units",
+            "unknown-parameter",
+        ),
+        (
+            "artifacts/plate-1.glb?version=r12",
+            "?version",
+            "unknown-parameter",
+        ),
+        ("artifacts?units=mm", "?units", "unknown-parameter"),
+    ] {
+        let answer = service.get(&format!("{place}/{query}")).await;
+        let problem = answer.problem(400, "invalid-query");
+        assert_eq!(problem["errors"][0]["pointer"], pointer, "{query}");
+        assert_eq!(problem["errors"][0]["code"], code, "{query}");
+    }
+}
+
+#[tokio::test]
+async fn artifacts_list_the_files_that_can_be_had() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let told = service.get(&place).await.json();
+    let link = told["links"]["artifacts"].as_str().unwrap();
+    assert_eq!(link, format!("{place}/artifacts"));
+    let list = service.get(link).await.json();
+    let items = list["items"].as_array().unwrap();
+    let names: Vec<&str> = items.iter().map(|i| i["name"].as_str().unwrap()).collect();
+    assert!(
+        names.contains(&"result.glb") && names.contains(&"result.zip"),
+        "{names:?}"
+    );
+    for item in items {
+        let answer = service.get(item["href"].as_str().unwrap()).await;
+        assert_eq!(answer.status, StatusCode::OK, "{item}");
+        assert_eq!(answer.header("content-type"), item["media_type"]);
+        let name = item["name"].as_str().unwrap();
+        let same = service.get(&format!("{link}/{name}")).await;
+        assert_eq!(same.body, answer.body, "{name}");
+        let units = item["parameters"]
+            .as_array()
+            .unwrap()
+            .contains(&json!("units"));
+        let scaled = service.get(&format!("{link}/{name}?units=mm")).await;
+        let expected = if units {
+            StatusCode::OK
+        } else {
+            StatusCode::BAD_REQUEST
+        };
+        assert_eq!(scaled.status, expected, "{name}");
+    }
+    for name in ["plate-99.glb", "result.dwg", "..", "x", "plate-1.dwg"] {
+        let answer = service.get(&format!("{link}/{name}")).await;
+        answer.problem(404, "artifact-not-found");
+    }
+    let idle = idle_service().await;
+    let posted = idle.post("/v1/jobs", job("deck").to_string()).await;
+    let early = format!("{}/artifacts", posted.header("location"));
+    idle.get(&early).await.problem(409, "result-not-ready");
+    let early = format!("{early}/plate-1.glb");
+    idle.get(&early).await.problem(409, "result-not-ready");
+}
+
+#[tokio::test]
+async fn an_erased_job_s_files_are_gone_though_they_were_written() {
+    let service = service().await;
+    let place = service.done(&job("deck")).await;
+    let paths = ["result.glb", "artifacts/result.glb", "artifacts"];
+    for path in paths {
+        let answer = service.get(&format!("{place}/{path}")).await;
+        assert_eq!(answer.status, StatusCode::OK, "{path}");
+    }
+    service.call(Method::DELETE, &place).await;
+    for path in paths {
+        let answer = service.get(&format!("{place}/{path}")).await;
+        answer.problem(404, "job-not-found");
+    }
 }

@@ -41,7 +41,9 @@ async fn a_method_tells_options_with_default_unit_and_bounds() {
     assert_eq!(method["input"][0]["required"], true);
     assert_eq!(
         method["formats"],
-        json!(["json", "obj", "csv", "svg", "step", "igs"])
+        json!([
+            "json", "obj", "stl", "ply", "glb", "csv", "svg", "step", "igs", "zip"
+        ])
     );
 }
 

@@ -83,8 +83,8 @@ fn deliver(product: &Product, settings: &FitSettings) -> Exit {
     let formats = settings.format.iter().map(|f| format_of(*f));
     for format in formats.filter(|f| method.formats().contains(f)) {
         let name = format!("result.{}", format.extension());
-        match method.write(format, &product.result) {
-            Ok(text) => written.push(files::write(&settings.out, &name, text.as_bytes())),
+        match method.write(format.into(), &product.result) {
+            Ok(bytes) => written.push(files::write(&settings.out, &name, &bytes)),
             Err(error) => out::complain(&format!("{name}: {}", error.detail)),
         }
     }
@@ -107,6 +107,9 @@ fn deliver(product: &Product, settings: &FitSettings) -> Exit {
 fn format_of(format: FileFormat) -> Format {
     match format {
         FileFormat::Obj => Format::Obj,
+        FileFormat::Stl => Format::Stl,
+        FileFormat::Ply => Format::Ply,
+        FileFormat::Glb => Format::Glb,
         FileFormat::Csv => Format::Csv,
         FileFormat::Svg => Format::Svg,
         FileFormat::Step => Format::Step,

@@ -1,8 +1,8 @@
-//! A strip of cones, cylinders and planes as its writers draw it: the mesh and
-//! the table of its workshop sheets.
+//! A strip of cones, cylinders and planes as its writers draw it, and the table
+//! of its workshop sheets.
 
 use super::csv::{END_OF_RECORD, field, harmless, number_field};
-use super::obj::{one_line, push};
+use super::mesh_out::ConeGrid;
 use nalgebra::{Point2, Point3, Vector3};
 
 /// A strip to be written as a file; all lengths in
@@ -50,6 +50,8 @@ pub struct ConeSheet {
     pub bend_side: Option<&'static str>,
     /// Points along side 0 and side 1, on the patch.
     pub sides: [Vec<Point3<f64>>; 2],
+    /// Places all over it.
+    pub grid: ConeGrid,
     /// Its area.
     pub area: f64,
     /// Largest and mean distance of the strip's vertices.
@@ -65,65 +67,6 @@ pub struct EndRuling {
     pub ends: [Point3<f64>; 2],
     /// The same in the flat pattern.
     pub flat: [Point2<f64>; 2],
-}
-
-/// The patches as Wavefront OBJ, one object each: triangles between their two
-/// sides, neighbours with the vertices of their ruling in common.
-#[must_use]
-pub fn mesh(drawing: &ConeSplineDrawing) -> String {
-    let mut text = format!(
-        "# {}\n# lengths in {}; {}\n",
-        one_line(&drawing.title),
-        one_line(&drawing.units),
-        one_line(&drawing.verdict)
-    );
-    let vertex = |text: &mut String, p: &Point3<f64>| {
-        push(text, format_args!("v {} {} {}\n", p.x, p.y, p.z));
-    };
-    let mut count = 0;
-    // The last vertex on each side so far, counted from 1 as OBJ does.
-    let mut last = [0; 2];
-    for (i, sheet) in drawing.sheets.iter().enumerate() {
-        let name = one_line(&sheet.name).replace(' ', "_");
-        push(&mut text, format_args!("o {name}\n"));
-        let mut rows: [Vec<usize>; 2] = [Vec::new(), Vec::new()];
-        for side in 0..2 {
-            let shared = usize::from(i > 0);
-            rows[side].extend((i > 0).then_some(last[side]));
-            for p in sheet.sides[side].iter().skip(shared) {
-                vertex(&mut text, p);
-                count += 1;
-                rows[side].push(count);
-            }
-            last[side] = rows[side].last().copied().unwrap_or(last[side]);
-        }
-        for [a, b, c] in between(&rows, &sheet.sides) {
-            push(&mut text, format_args!("f {a} {b} {c}\n"));
-        }
-    }
-    text
-}
-
-/// Triangles between two rows of vertices, always over the shorter of the two
-/// next edges; r × t is up, with r from the first row to the second.
-fn between(rows: &[Vec<usize>; 2], points: &[Vec<Point3<f64>>; 2]) -> Vec<[usize; 3]> {
-    let [first, second] = rows;
-    let (mut i, mut j) = (0, 0);
-    let mut triangles = Vec::new();
-    while i + 1 < first.len() || j + 1 < second.len() {
-        let length = |i: usize, j: usize| match (points[0].get(i), points[1].get(j)) {
-            (Some(p), Some(q)) => (q - p).norm_squared(),
-            _ => f64::INFINITY,
-        };
-        if length(i + 1, j) <= length(i, j + 1) {
-            triangles.push([first[i], second[j], first[i + 1]]);
-            i += 1;
-        } else {
-            triangles.push([first[i], second[j], second[j + 1]]);
-            j += 1;
-        }
-    }
-    triangles
 }
 
 /// The workshop sheets as RFC 4180 comma-separated values, one record a patch,
@@ -236,6 +179,7 @@ mod tests {
             bend_strain_percent: None,
             bend_side: None,
             sides: [side(1.0, a), side(0.0, b)],
+            grid: ConeGrid::default(),
             area: 2.0,
             errors: [0.5, 0.25],
         };
@@ -254,30 +198,6 @@ mod tests {
             ],
             rulings: vec![ruling(0, 0.0), ruling(1, 2.0), ruling(2, 3.0)],
         }
-    }
-
-    #[test]
-    fn the_mesh_covers_the_patches_and_shares_their_ruling() {
-        let text = mesh(&drawing());
-        let mut vertices = vec![[0.0; 3]];
-        let mut area = 0.0;
-        for line in text.lines() {
-            let words: Vec<&str> = line.split(' ').collect();
-            let numbers = || words[1..].iter().map(|w| w.parse::<f64>().unwrap());
-            match words[0] {
-                "v" => vertices.push(numbers().collect::<Vec<_>>().try_into().unwrap()),
-                "f" => {
-                    let [a, b, c] = [1, 2, 3].map(|i| vertices[words[i].parse::<usize>().unwrap()]);
-                    let up = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                    assert!(up > 0.0, "{line}");
-                    area += 0.5 * up;
-                }
-                _ => {}
-            }
-        }
-        // 3 + 2, then 1 + 3 that are new.
-        assert_eq!(vertices.len() - 1, 9);
-        assert!((area - 3.0).abs() < 1e-12);
     }
 
     #[test]

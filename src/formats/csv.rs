@@ -6,44 +6,25 @@
 //! text that begins with `=`, `+`, `-` or `@` as a formula, so such a plate
 //! name gets a leading apostrophe.
 
-use super::plates::{HullDrawing, RulingLine};
-use nalgebra::Point2;
+use super::plates::{HullDrawing, RollRow, RulingLine};
 
 /// RFC 4180 §2: records end in CR LF.
 pub(super) const END_OF_RECORD: &str = "\r\n";
 
-/// A ruling in the flat pattern.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RollRow {
-    /// The piece of the pattern, counted from 1.
-    pub piece: usize,
-    /// Which ruling of the plate, counted from 0.
-    pub ruling: usize,
-    /// Its ends, measured along the piece's base line and across.
-    pub flat: [Point2<f64>; 2],
-    /// Angle from the base line, degrees.
-    pub angle_deg: f64,
-    /// Bend from here to the next ruling, degrees; positive: up.
-    pub bend_deg: f64,
-    /// Strain that its twist leaves, percent.
-    pub strain_percent: f64,
-}
-
 /// One record a ruling below one header record that carries the units; plates
-/// and rulings in the order of the drawing, rulings counted from 1. `rolls` has
-/// the rows of each plate's flat pattern, none for a plate that has no pattern.
+/// and rulings in the order of the drawing, rulings counted from 1. A plate that
+/// has no flat pattern has its rulings in space alone.
 #[must_use]
-pub fn roll_table(hull: &HullDrawing, rolls: &[Vec<RollRow>]) -> String {
+pub fn roll_table(hull: &HullDrawing) -> String {
     let mut table = header(&hull.units);
-    for (k, plate) in hull.plates.iter().enumerate() {
+    for plate in &hull.plates {
         let name = field(&harmless(&plate.name));
-        let rows = rolls.get(k).map_or(&[][..], Vec::as_slice);
-        if rows.is_empty() {
+        if plate.rolls.is_empty() {
             for (index, ruling) in plate.rulings.iter().enumerate() {
                 table.push_str(&record(&name, index + 1, ruling, None));
             }
         }
-        for row in rows {
+        for row in &plate.rolls {
             if let Some(ruling) = plate.rulings.get(row.ruling) {
                 table.push_str(&record(&name, row.ruling + 1, ruling, Some(row)));
             }
@@ -160,7 +141,7 @@ pub(super) fn harmless(text: &str) -> String {
 mod tests {
     use super::super::plates::PlateDrawing;
     use super::*;
-    use nalgebra::Point3;
+    use nalgebra::{Point2, Point3};
 
     fn hull(name: &str, radius: f64) -> HullDrawing {
         let ruling = RulingLine {
@@ -178,6 +159,7 @@ mod tests {
             plates: vec![PlateDrawing {
                 name: name.into(),
                 rulings: vec![ruling],
+                rolls: Vec::new(),
                 within_limits: true,
             }],
             profiles: Vec::new(),
@@ -188,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_row_carries_the_ruling_and_its_length() {
-        let table = roll_table(&hull("deck – chine", 12.5), &[]);
+        let table = roll_table(&hull("deck – chine", 12.5));
         let rows: Vec<&str> = table.split("\r\n").collect();
         assert!(rows[0].starts_with("plate,ruling,u,from_x (ft)"));
         assert_eq!(
@@ -209,8 +191,9 @@ mod tests {
             bend_deg: -0.5,
             strain_percent: 0.01,
         };
-        let rolls = vec![vec![row(1, 7.0), row(2, 0.0)]];
-        let table = roll_table(&hull("a", 1.0), &rolls);
+        let mut hull = hull("a", 1.0);
+        hull.plates[0].rolls = vec![row(1, 7.0), row(2, 0.0)];
+        let table = roll_table(&hull);
         let rows: Vec<&str> = table.split("\r\n").collect();
         assert!(rows[1].starts_with("a,1,0.1,") && rows[1].ends_with(",1,7,0,7,5,90,-0.5,0.01"));
         assert!(rows[2].starts_with("a,1,0.1,") && rows[2].ends_with(",2,0,0,0,5,90,-0.5,0.01"));
@@ -219,12 +202,12 @@ mod tests {
 
     #[test]
     fn a_flat_place_has_no_radius() {
-        assert!(roll_table(&hull("a", f64::INFINITY), &[]).contains("-1.25,,0.33"));
+        assert!(roll_table(&hull("a", f64::INFINITY)).contains("-1.25,,0.33"));
     }
 
     #[test]
     fn names_are_quoted_and_disarmed() {
-        assert!(roll_table(&hull("a, \"b\"", 1.0), &[]).contains("\"a, \"\"b\"\"\",1,"));
-        assert!(roll_table(&hull("=1+1", 1.0), &[]).contains("'=1+1,1,"));
+        assert!(roll_table(&hull("a, \"b\"", 1.0)).contains("\"a, \"\"b\"\"\",1,"));
+        assert!(roll_table(&hull("=1+1", 1.0)).contains("'=1+1,1,"));
     }
 }

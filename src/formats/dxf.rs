@@ -110,7 +110,7 @@ pub enum Entity {
 }
 
 /// Which reader it is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Version {
     /// AC1015.
     R2000,

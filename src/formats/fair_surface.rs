@@ -2,7 +2,7 @@
 //! corrections, the plot with its isophotes.
 
 mod delaunay;
-mod mesh;
+pub(super) mod mesh;
 pub(super) mod outline;
 
 use super::fair_points;
@@ -51,14 +51,6 @@ pub struct Isophotes {
 #[must_use]
 pub fn correction_table(drawing: &FairSurfaceDrawing) -> String {
     fair_points::correction_table(&drawing.points, &drawing.units, 3)
-}
-
-/// The trimmed surface as Wavefront OBJ: triangles with normals, edges along
-/// the outlines, the winding that of ∂S/∂u × ∂S/∂v throughout. A comment tells
-/// how far the triangles leave the surface.
-#[must_use]
-pub fn mesh(drawing: &FairSurfaceDrawing) -> String {
-    mesh::write(drawing)
 }
 
 /// A page of SVG: isophotes as bands, the outline, the largest moves and the

@@ -1,38 +1,57 @@
-//! Wavefront OBJ: one object a plate over one shared list of vertices,
-//! watertight along the chines, every ruling an edge.
+//! Wavefront OBJ: one object a part over one shared list of vertices, so that
+//! neighbours are watertight along the border that they share.
 //!
-//! The format knows no units; they stand in a comment at the top. How the
-//! triangles come about is told in `strip.rs`.
+//! The format knows no units; they stand in a comment at the top.
 
-use super::plates::HullDrawing;
-use super::strip;
+use super::mesh_out::MeshDrawing;
 use std::fmt::Write as _;
 
-/// The hull as triangles. Coordinates carry as many digits as it takes to read
+/// The mesh as text. Coordinates carry as many digits as it takes to read
 /// the same bits back; lines end in a line feed.
-pub fn write(hull: &HullDrawing) -> String {
-    let mesh = strip::mesh(hull);
-    let mut text = format!(
-        "# {}\n# lengths in {}; {}\n",
-        one_line(&hull.title),
-        one_line(&hull.units),
-        one_line(&hull.verdict)
-    );
-    for vertex in &mesh.vertices {
+#[must_use]
+pub fn write(mesh: &MeshDrawing) -> String {
+    let mut text = heading(mesh);
+    for v in &mesh.vertices {
+        push(&mut text, format_args!("v {} {} {}\n", v.x, v.y, v.z));
+    }
+    for n in &mesh.normals {
+        // A unit vector to seven digits is exact to a hundred-thousandth of a degree.
         push(
             &mut text,
-            format_args!("v {} {} {}\n", vertex.x, vertex.y, vertex.z),
+            format_args!("vn {:.7} {:.7} {:.7}\n", n.x, n.y, n.z),
         );
     }
-    for (index, (plate, triangles)) in hull.plates.iter().zip(&mesh.plates).enumerate() {
+    for (name, part) in mesh.part_names().iter().zip(&mesh.parts) {
+        push(&mut text, format_args!("o {}\n", object_name(name)));
+        for triangle in &part.triangles {
+            // OBJ counts from 1.
+            let [a, b, c] = triangle.map(|i| part.corners[i] + 1);
+            if mesh.normals.is_empty() {
+                push(&mut text, format_args!("f {a} {b} {c}\n"));
+            } else {
+                push(&mut text, format_args!("f {a}//{a} {b}//{b} {c}//{c}\n"));
+            }
+        }
+    }
+    text
+}
+
+fn heading(mesh: &MeshDrawing) -> String {
+    let mut text = format!(
+        "# {}\n# lengths in {}; {}\n",
+        one_line(&mesh.title),
+        mesh.units,
+        one_line(&mesh.verdict)
+    );
+    if let Some(error) = mesh.chordal_error {
+        let triangles: usize = mesh.parts.iter().map(|p| p.triangles.len()).sum();
         push(
             &mut text,
-            format_args!("o {}\n", object_name(index, &plate.name)),
+            format_args!(
+                "# {triangles} triangles, within {error:.2e} {} of the surface\n",
+                mesh.units
+            ),
         );
-        for [a, b, c] in triangles {
-            // OBJ counts from 1.
-            push(&mut text, format_args!("f {} {} {}\n", a + 1, b + 1, c + 1));
-        }
     }
     text
 }
@@ -49,9 +68,8 @@ pub(super) fn one_line(text: &str) -> String {
         .collect()
 }
 
-/// Many readers end a name at the first space and mix up objects of one name,
-/// so spaces become underscores and the plate's number goes in front.
-fn object_name(index: usize, name: &str) -> String {
+/// Many readers end a name at the first space, so spaces become underscores.
+fn object_name(name: &str) -> String {
     let visible = |c: char| {
         if c.is_whitespace() || c.is_control() {
             '_'
@@ -59,52 +77,39 @@ fn object_name(index: usize, name: &str) -> String {
             c
         }
     };
-    let name: String = name.chars().map(visible).collect();
-    format!("plate_{}_{name}", index + 1)
+    name.chars().map(visible).collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::plates::{PlateDrawing, RulingLine};
+    use super::super::mesh_out::tests::two_squares;
     use super::*;
-    use nalgebra::Point3;
-
-    fn square(name: &str) -> HullDrawing {
-        let ruling = |x: f64| RulingLine {
-            u: x,
-            from: Point3::new(x, 0.0, 1.0),
-            to: Point3::new(x, 0.0, 0.0),
-            twist_deg: 0.0,
-            bend_radius_from: f64::INFINITY,
-            bend_radius_to: f64::INFINITY,
-        };
-        let rulings = vec![ruling(0.0), ruling(1.0)];
-        HullDrawing {
-            title: "two\nlines".into(),
-            units: "m".into(),
-            twist_limit_deg: 6.0,
-            plates: vec![PlateDrawing {
-                name: name.into(),
-                rulings,
-                within_limits: true,
-            }],
-            profiles: Vec::new(),
-            verdict: "within_limits".into(),
-            summary: Vec::new(),
-        }
-    }
 
     #[test]
-    fn a_square_is_two_triangles() {
+    fn parts_share_their_vertices() {
+        let mut mesh = two_squares();
+        mesh.title = "two\nlines".into();
         let expected = "# two lines\n# lengths in m; within_limits\n\
-            v 0 0 1\nv 1 0 1\nv 0 0 0\nv 1 0 0\n\
-            o plate_1_deck_–_keel\nf 1 2 3\nf 2 4 3\n";
-        assert_eq!(write(&square("deck – keel")), expected);
+            v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0.5\n\
+            o deck_–_keel\nf 1 2 5\nf 1 5 4\no deck_–_keel_(2)\nf 2 3 6\nf 2 6 5\n";
+        assert_eq!(write(&mesh), expected);
     }
 
     #[test]
     fn a_name_cannot_break_out_of_its_line() {
-        let text = write(&square("x\nf 1 1 1"));
-        assert!(text.contains("o plate_1_x_f_1_1_1\n"));
+        let mut mesh = two_squares();
+        mesh.parts[0].name = "x\nf 1 1 1".into();
+        assert!(write(&mesh).contains("o x_f_1_1_1\n"));
+    }
+
+    #[test]
+    fn normals_and_the_chordal_error_are_told() {
+        let mut mesh = two_squares();
+        mesh.normals = vec![nalgebra::Vector3::z(); mesh.vertices.len()];
+        mesh.chordal_error = Some(1.25e-3);
+        let text = write(&mesh);
+        assert!(text.contains("# 4 triangles, within 1.25e-3 m of the surface\n"));
+        assert!(text.contains("vn 0.0000000 0.0000000 1.0000000\n"));
+        assert!(text.contains("f 1//1 2//2 5//5\n"));
     }
 }

@@ -1,7 +1,7 @@
 //! A hull's plates as every writer draws them: rulings, profile curves and the
 //! sentences that go with them, sampled and free of the method's own types.
 
-use nalgebra::Point3;
+use nalgebra::{Point2, Point3};
 
 /// A hull to be written as a file. Plate `k` lies between profile `k` and
 /// profile `k + 1`; all lengths are in [`HullDrawing::units`].
@@ -30,6 +30,8 @@ pub struct PlateDrawing {
     pub name: String,
     /// Rulings in order along both profiles; a fan repeats one of the ends.
     pub rulings: Vec<RulingLine>,
+    /// The rulings in its flat pattern, piece by piece; empty without one.
+    pub rolls: Vec<RollRow>,
     /// Whether the plate keeps every limit that was asked.
     pub within_limits: bool,
 }
@@ -50,6 +52,23 @@ pub struct RulingLine {
     pub bend_radius_from: f64,
     /// The same at `to`.
     pub bend_radius_to: f64,
+}
+
+/// A ruling in the flat pattern.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RollRow {
+    /// The piece of the pattern, counted from 1.
+    pub piece: usize,
+    /// Which ruling of the plate, counted from 0.
+    pub ruling: usize,
+    /// Its ends, measured along the piece's base line and across.
+    pub flat: [Point2<f64>; 2],
+    /// Angle from the base line, degrees.
+    pub angle_deg: f64,
+    /// Bend from here to the next ruling, degrees; positive: up.
+    pub bend_deg: f64,
+    /// Strain that its twist leaves, percent.
+    pub strain_percent: f64,
 }
 
 /// A profile curve, sampled closely enough to be drawn.

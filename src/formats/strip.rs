@@ -14,6 +14,7 @@
 
 use super::plates::{HullDrawing, PlateDrawing, model_size};
 use nalgebra::{Point3, Vector3};
+use std::collections::BTreeMap;
 
 /// Ruling ends nearer than this share of the model size are one vertex: far
 /// above the rounding of an evaluated spline (1e-15), far below the accuracy
@@ -25,10 +26,21 @@ const WELD: f64 = 1e-9;
 pub(super) struct HullMesh {
     /// Vertices, profile after profile.
     pub vertices: Vec<Point3<f64>>,
-    /// Per plate, its triangles as indices into `vertices`; the winding is
+    /// The plates in order; the winding is
     /// the same throughout, with the outside of a hull in front when its
     /// profiles run forward, from the deck down, on the side of positive y.
-    pub plates: Vec<Vec<[usize; 3]>>,
+    pub plates: Vec<PlateMesh>,
+}
+
+/// The triangles of a plate.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct PlateMesh {
+    /// As indices into the vertices of the hull.
+    pub triangles: Vec<[usize; 3]>,
+    /// The twist at each of its vertices, signed, degrees: that of the ruling
+    /// that ends there, and between two rulings by the length of the profile.
+    /// Where several rulings end (in the tip of a fan), the largest.
+    pub twists: BTreeMap<usize, f64>,
 }
 
 /// Meshes a hull. Rulings that are not finite are left out.
@@ -53,10 +65,8 @@ pub(super) fn mesh(hull: &HullDrawing) -> HullMesh {
         }
     }
     let canonical = builder.weld_tips(&from_indices, &to_indices);
-    let plates = from_indices
-        .iter()
-        .zip(&to_indices)
-        .map(|(from, to)| builder.strip(from, to, &canonical))
+    let plates = (ends.iter().zip(from_indices.iter().zip(&to_indices)))
+        .map(|(ends, (from, to))| builder.strip([from, to], &ends.twists, &canonical))
         .collect();
     HullMesh {
         vertices: builder.vertices,
@@ -64,10 +74,11 @@ pub(super) fn mesh(hull: &HullDrawing) -> HullMesh {
     }
 }
 
-/// The two lists of ruling ends of one plate.
+/// The two lists of ruling ends of one plate, and the rulings' twists.
 struct Ends {
     from: Vec<Point3<f64>>,
     to: Vec<Point3<f64>>,
+    twists: Vec<f64>,
 }
 
 impl Ends {
@@ -76,6 +87,16 @@ impl Ends {
         Ends {
             from: rulings().map(|r| r.from).collect(),
             to: rulings().map(|r| r.to).collect(),
+            twists: rulings().map(|r| r.twist_deg).collect(),
+        }
+    }
+}
+
+impl PlateMesh {
+    fn note(&mut self, vertex: usize, twist: f64) {
+        let known = self.twists.entry(vertex).or_insert(twist);
+        if twist.abs() > known.abs() {
+            *known = twist;
         }
     }
 }
@@ -127,15 +148,26 @@ impl Builder {
     }
 
     /// Triangles of one plate, cell by cell between neighbouring rulings.
-    fn strip(&self, from: &[usize], to: &[usize], canonical: &[usize]) -> Vec<[usize; 3]> {
+    fn strip(&self, [from, to]: [&[usize]; 2], twists: &[f64], canonical: &[usize]) -> PlateMesh {
         let mut triangles = Vec::new();
-        for (f, t) in from.windows(2).zip(to.windows(2)) {
+        let mut plate = PlateMesh::default();
+        let rulings = from.windows(2).zip(to.windows(2)).zip(twists.windows(2));
+        for ((f, t), twist) in rulings {
             self.cell([f[0], f[1]], [t[0], t[1]], &mut triangles);
+            for range in [[f[0], f[1]], [t[0], t[1]]] {
+                for (vertex, share) in (range[0]..).zip(self.shares(range)) {
+                    let here = twist[0] + share * (twist[1] - twist[0]);
+                    plate.note(canonical[vertex], here);
+                }
+                // A side that stays in one vertex has the later twist too.
+                plate.note(canonical[range[1]], twist[1]);
+            }
         }
         let welded = triangles.into_iter().map(|t| t.map(|i| canonical[i]));
-        welded
+        plate.triangles = welded
             .filter(|[a, b, c]| a != b && b != c && c != a)
-            .collect()
+            .collect();
+        plate
     }
 
     /// Triangulates one cell: the vertices `f[0]..=f[1]` of one profile against
@@ -232,6 +264,7 @@ mod tests {
         PlateDrawing {
             name: "p".into(),
             rulings: at.iter().map(ruling).collect(),
+            rolls: Vec::new(),
             within_limits: true,
         }
     }
@@ -255,7 +288,7 @@ mod tests {
     /// How often each directed edge is used.
     fn directed_edges(mesh: &HullMesh) -> HashMap<(usize, usize), usize> {
         let mut count = HashMap::new();
-        for [a, b, c] in mesh.plates.iter().flatten() {
+        for [a, b, c] in mesh.plates.iter().flat_map(|p| &p.triangles) {
             for edge in [(*a, *b), (*b, *c), (*c, *a)] {
                 *count.entry(edge).or_insert(0) += 1;
             }
@@ -269,7 +302,7 @@ mod tests {
             edges.values().all(|n| *n == 1),
             "an edge is used twice the same way round"
         );
-        for t in mesh.plates.iter().flatten() {
+        for t in mesh.plates.iter().flat_map(|p| &p.triangles) {
             let [a, b, c] = t.map(|i| mesh.vertices[i]);
             assert!(
                 (b - a).cross(&(c - a)).norm() > 1e-12,
@@ -353,7 +386,11 @@ mod tests {
         ]));
         assert_sound(&mesh);
         assert_eq!(slits(&mesh), 0);
-        assert_eq!(mesh.plates[0].len(), 19, "the last cell is one triangle");
+        assert_eq!(
+            mesh.plates[0].triangles.len(),
+            19,
+            "the last cell is one triangle"
+        );
     }
 
     #[test]
@@ -373,10 +410,37 @@ mod tests {
     }
 
     #[test]
+    fn twists_belong_to_the_plate_and_run_on_between_rulings() {
+        let twisted = |twists: [f64; 2], from: Curve, to: Curve| {
+            let mut plate = plate(from, to, &[(0.0, 0.0), (10.0, 10.0)]);
+            for (ruling, twist) in plate.rulings.iter_mut().zip(twists) {
+                ruling.twist_deg = twist;
+            }
+            plate
+        };
+        let mut below = twisted([5.0, 5.0], chine, keel);
+        let middle = RulingLine {
+            from: Point3::from((chine(0.0).coords + chine(10.0).coords) / 2.0),
+            to: keel(5.0),
+            ..below.rulings[0]
+        };
+        below.rulings.insert(1, middle);
+        let mesh = mesh(&hull(vec![twisted([-1.0, 3.0], upper, chine), below]));
+        let at = |plate: usize, p: Point3<f64>| {
+            let vertex = mesh.vertices.iter().position(|v| (v - p).norm() < 1e-9);
+            mesh.plates[plate].twists[&vertex.unwrap()]
+        };
+        assert_eq!(at(0, chine(0.0)), -1.0);
+        assert_eq!(at(0, chine(10.0)), 3.0);
+        assert_eq!(at(1, chine(0.0)), 5.0);
+        assert!((at(0, middle.from) - 1.0).abs() < 1e-12, "half way");
+    }
+
+    #[test]
     fn nothing_and_nonsense_give_an_empty_mesh() {
         assert!(mesh(&hull(Vec::new())).plates.is_empty());
         let nan: Curve = |_| Point3::new(f64::NAN, 0.0, 0.0);
         let mesh = mesh(&hull(vec![plate(nan, keel, &[(0.0, 0.0), (1.0, 1.0)])]));
-        assert_eq!(mesh.plates, [Vec::<[usize; 3]>::new()]);
+        assert_eq!(mesh.plates, [PlateMesh::default()]);
     }
 }

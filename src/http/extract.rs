@@ -4,7 +4,7 @@
 use super::Api;
 use super::did_you_mean::unknown;
 use super::problem::{ApiError, Code, FieldError};
-use axum::extract::{FromRequest, FromRequestParts, Path, Query, Request};
+use axum::extract::{FromRequest, FromRequestParts, Query, RawPathParams, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
 use bytes::Bytes;
@@ -43,8 +43,9 @@ impl FromRequestParts<Api> for Id {
     type Rejection = ApiError;
 
     async fn from_request_parts(parts: &mut Parts, api: &Api) -> Result<Self, ApiError> {
-        let text = Path::<String>::from_request_parts(parts, api).await;
-        let id = text.ok().and_then(|Path(text)| text.parse().ok());
+        let named = RawPathParams::from_request_parts(parts, api).await;
+        let text = named.iter().flatten().find(|(name, _)| *name == "id");
+        let id = text.and_then(|(_, text)| text.parse().ok());
         id.map(Id)
             .ok_or_else(|| ApiError::new(Code::JobNotFound, "this is not the id of a job"))
     }

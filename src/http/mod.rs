@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! layers (id, log, problem documents, compression, panics, time, size)
-//!   └ routes: jobs results methods examples health docs metrics page
+//!   └ routes: jobs results artifacts methods examples health docs metrics page
 //!       ├ extract, intake: from a request to a value, strictly
 //!       │    strict_json → schema_check → dto → methods::…::Request
 //!       └ respond, problem, failures: from a value or an error to an answer
@@ -14,8 +14,8 @@
 //! codes; bounds of a job are written once, in the DTO's schema, which is
 //! published, compiled and checked ([`schema_check`]).
 //!
-//! Limits: one tenant (see [`extract::Owner`]); files are written anew at each
-//! request, which takes milliseconds; no streams.
+//! Limits: one tenant (see [`extract::Owner`]); files are written at request, and
+//! only those asked for lately are kept; no streams.
 
 // utoipa's attribute macros name types by paths that the lint finds too long.
 #![allow(unused_qualifications)]
@@ -36,7 +36,10 @@ pub mod schema_check;
 pub mod strict_json;
 pub mod upload;
 
+mod archive;
+mod artifacts;
 mod docs;
+mod file_query;
 mod health;
 mod jobs;
 mod layers;
@@ -44,6 +47,7 @@ mod page;
 mod references;
 mod results;
 mod verify;
+mod written;
 
 pub use docs::Document;
 pub use engine::Engine;
@@ -72,6 +76,7 @@ pub struct Api {
     /// Bounds on requests.
     pub limits: Limits,
     document: Document,
+    written: Arc<written::Written>,
 }
 
 impl Api {
@@ -86,6 +91,7 @@ impl Api {
             metrics,
             limits: Limits::default(),
             document,
+            written: Arc::default(),
         })
     }
 
@@ -120,11 +126,17 @@ fn all_routes() -> OpenApiRouter<Api> {
         .routes(routes!(results::result))
         .routes(routes!(results::result_json))
         .routes(routes!(results::result_obj))
+        .routes(routes!(results::result_stl))
+        .routes(routes!(results::result_ply))
+        .routes(routes!(results::result_glb))
         .routes(routes!(results::result_csv))
         .routes(routes!(results::result_svg))
         .routes(routes!(results::result_step))
         .routes(routes!(results::result_igs))
         .routes(routes!(results::result_dxf))
+        .routes(routes!(results::result_zip))
+        .routes(routes!(artifacts::list))
+        .routes(routes!(artifacts::get))
         .routes(routes!(results::diagnostics))
         .routes(routes!(verify::verify))
         .merge(methods::routes())

@@ -49,7 +49,7 @@ pub fn head() -> OpenApi {
 pub fn finish(api: &mut OpenApi) {
     let mut shared = BTreeMap::new();
     for (path, item) in &mut api.paths.paths {
-        if path.contains("/result.") {
+        if path.contains("/result.") || path.contains("/artifacts/") {
             item.head = item.get.as_ref().map(head_of);
         }
         for operation in operations(item) {
@@ -235,6 +235,15 @@ problem_sets! {
     Files = [
         JobNotFound, FormatNotAvailable, ResultNotReady, JobFailed, JobDismissed, Expired,
         RangeNotSatisfiable, StoreUnavailable,
+    ];
+    /// What can go wrong with the list of a job's files.
+    Artifacts = [
+        JobNotFound, ResultNotReady, JobFailed, JobDismissed, Expired, StoreUnavailable,
+    ];
+    /// What can go wrong with one of them.
+    OneArtifact = [
+        JobNotFound, ArtifactNotFound, FormatNotAvailable, ResultNotReady, JobFailed,
+        JobDismissed, Expired, RangeNotSatisfiable, StoreUnavailable,
     ];
     /// What can go wrong with one method.
     OneMethod = [MethodNotFound];

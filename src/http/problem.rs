@@ -60,6 +60,8 @@ codes! {
     MethodNotFound = "method-not-found", "There is no such fitting method";
     /// No such example.
     ExampleNotFound = "example-not-found", "There is no such example";
+    /// The job has no file of that name.
+    ArtifactNotFound = "artifact-not-found", "The job has no such file";
     /// Results are not written in this format.
     FormatNotAvailable = "format-not-available", "The result is not available in this format";
     /// The path exists, but not with this HTTP method.
@@ -116,6 +118,7 @@ impl Code {
             | Code::JobNotFound
             | Code::MethodNotFound
             | Code::ExampleNotFound
+            | Code::ArtifactNotFound
             | Code::FormatNotAvailable => StatusCode::NOT_FOUND,
             Code::MethodNotAllowed => StatusCode::METHOD_NOT_ALLOWED,
             Code::NotAcceptable => StatusCode::NOT_ACCEPTABLE,

@@ -1,14 +1,18 @@
 //! What a job leaves: its result as JSON and as files, its diagnostics.
 
 use super::Api;
+use super::archive;
+use super::artifacts::away;
 use super::dto::ResultDocument;
 use super::dto::diagnostics::DiagnosticsAnswer;
 use super::extract::{Asked, Id, Nothing, Owner};
+use super::file_query::{CuttingQuery, FileQuery, UnitsQuery};
 use super::jobs::WaitQuery;
-use super::methods::{self, Format};
+use super::methods::{self, Document, Form, Format, document};
 use super::openapi::{Diagnosing, Files, RawBytes, Results};
 use super::problem::{ApiError, Code, Success};
 use super::respond::{self, File};
+use super::written::Key;
 use crate::jobs::{Job, JobId, QueueError, Status, Tenant};
 use axum::extract::State;
 use axum::http::{HeaderMap, header};
@@ -16,31 +20,39 @@ use axum::response::Response;
 use bytes::Bytes;
 use serde_json::value::RawValue;
 
-/// Writes a stored result.
-fn write(method: &str, format: Format, result: Bytes) -> Result<Bytes, ApiError> {
-    if format == Format::Json {
-        return Ok(result);
-    }
-    let method = methods::named(method)
-        .ok_or_else(|| ApiError::internal(&format!("no method {method} wrote this")))?;
-    if !method.formats().contains(&format) {
-        return Err(not_available(format.extension(), method.formats()));
-    }
-    Ok(method.write(format, &result)?.into())
+/// A job and its result, once it has ended.
+pub(super) struct Stored {
+    /// The job.
+    pub job: Job,
+    /// Its owner.
+    owner: Tenant,
+    /// The result as it is kept.
+    result: Bytes,
 }
 
-fn not_available(extension: &str, formats: &[Format]) -> ApiError {
-    let known: Vec<&str> = formats.iter().map(|f| f.extension()).collect();
-    let detail = format!(
-        "there is no result.{extension}; there are {}",
-        known.join(", ")
-    );
-    ApiError::new(Code::FormatNotAvailable, detail)
+impl Stored {
+    /// The result read back.
+    ///
+    /// # Errors
+    /// A fault of ours.
+    pub fn open(&self) -> Result<Box<dyn Document>, ApiError> {
+        let method = methods::named(&self.job.method);
+        let method = method.ok_or_else(|| {
+            ApiError::internal(&format!("no method {} wrote this", self.job.method))
+        })?;
+        method.open(&self.result)
+    }
+
+    /// What files of it are called by.
+    pub fn title(&self) -> &str {
+        let label = self.job.label.as_deref();
+        label.unwrap_or(&self.job.method).trim()
+    }
 }
 
 /// The failure of an ending that is no format, naming those that are.
 pub(super) fn no_such_format(extension: &str) -> ApiError {
-    not_available(extension, &Format::ALL)
+    document::not_available(extension, &Format::ALL)
 }
 
 /// The format that `Accept` likes best; JSON when it likes all the same.
@@ -93,18 +105,44 @@ fn quality(accepted: &[String], essence: &str) -> f64 {
 }
 
 /// The job and its stored result, once it has ended.
-async fn stored(api: &Api, owner: &Tenant, id: JobId) -> Result<(Job, Bytes), ApiError> {
-    let job = api.queue.get(owner, id).await?;
-    let bytes = api.queue.result(owner, id).await?;
-    Ok((job, bytes))
+///
+/// # Errors
+/// There is no such job of this owner, or it has no result.
+pub(super) async fn stored(api: &Api, owner: Tenant, id: JobId) -> Result<Stored, ApiError> {
+    Ok(Stored {
+        job: api.queue.get(&owner, id).await?,
+        result: api.queue.result(&owner, id).await?,
+        owner,
+    })
 }
 
-async fn written(job: &Job, format: Format, result: Bytes) -> Result<Bytes, ApiError> {
-    let method = job.method.clone();
-    match tokio::task::spawn_blocking(move || write(&method, format, result)).await {
-        Ok(bytes) => bytes,
-        Err(lost) => Err(ApiError::internal(&lost)),
+/// The result in a form, out of those that were written lately if it is there.
+async fn written(api: &Api, stored: Stored, form: Form) -> Result<Bytes, ApiError> {
+    if form.format == Format::Json {
+        return Ok(stored.result);
     }
+    let key = Key {
+        job: stored.job.id,
+        part: None,
+        form,
+    };
+    if let Some(known) = api.written.get(&key) {
+        return Ok(known);
+    }
+    let input = match form.format {
+        Format::Zip => api.queue.input(&stored.owner, stored.job.id).await?,
+        _ => Bytes::new(),
+    };
+    let write = move || {
+        let opened = stored.open()?;
+        match form.format {
+            Format::Zip => archive::pack(&*opened, &input, &stored.result),
+            _ => document::write(&*opened, form),
+        }
+    };
+    let bytes: Bytes = away(write).await?.into();
+    api.written.keep(key, bytes.clone());
+    Ok(bytes)
 }
 
 /// The result of a job
@@ -121,8 +159,11 @@ async fn written(job: &Job, format: Format, result: Bytes) -> Result<Bytes, ApiE
         (status = 200, description = "The result",
             content(
                 (ResultDocument = "application/json"),
-                (String = "model/obj"), (String = "text/csv"), (String = "image/svg+xml"),
-                (String = "model/step"), (String = "model/iges"), (String = "image/vnd.dxf"),
+                (String = "model/obj"), (inline(RawBytes) = "model/stl"),
+                (inline(RawBytes) = "application/x-ply"), (inline(RawBytes) = "model/gltf-binary"),
+                (String = "text/csv"), (String = "image/svg+xml"), (String = "model/step"),
+                (String = "model/iges"), (String = "image/vnd.dxf"),
+                (inline(RawBytes) = "application/zip"),
             ),
             headers(("ETag" = String, description = "SHA-256 of the bytes"))),
         (status = 206, description = "The bytes that `Range` asked for",
@@ -142,8 +183,8 @@ pub(super) async fn result(
     if let Some(wait) = query.wait {
         api.queue.wait_ended(&owner, id, wait).await?;
     }
-    let (job, result) = stored(&api, &owner, id).await?;
-    let bytes = written(&job, format, result).await?;
+    let stored = stored(&api, owner, id).await?;
+    let bytes = written(&api, stored, format.into()).await?;
     let file = File {
         content_type: format.content_type(),
         bytes,
@@ -153,45 +194,52 @@ pub(super) async fn result(
     Ok(respond::with(file.answer(&headers), header::VARY, "Accept"))
 }
 
-async fn file(
-    api: Api,
-    owner: Tenant,
-    id: JobId,
-    headers: HeaderMap,
-    format: Format,
+/// The whole result as a file.
+///
+/// # Errors
+/// It has no such form.
+pub(super) async fn whole(
+    api: &Api,
+    stored: Stored,
+    form: Form,
+    headers: &HeaderMap,
 ) -> Result<Response, ApiError> {
-    let (job, result) = stored(&api, &owner, id).await?;
-    let bytes = written(&job, format, result).await?;
-    let stem = job.label.unwrap_or(job.method);
+    let name = format!("{}.{}", stored.title(), form.format.extension());
+    let bytes = written(api, stored, form).await?;
+    Ok(file(name, form.format, bytes, headers))
+}
+
+/// A file with its name.
+pub(super) fn file(name: String, format: Format, bytes: Bytes, headers: &HeaderMap) -> Response {
     let file = File {
         content_type: format.content_type(),
         bytes,
-        name: Some(format!("{}.{}", stem.trim(), format.extension())),
+        name: Some(name),
         // A browser shows the drawing; the rest is for other programmes.
         inline: format == Format::Svg,
     };
-    let response = file.answer(&headers);
-    Ok(match format {
-        // The label is the user's: no script runs in it whatever it says.
-        Format::Svg => respond::with(
-            response,
-            header::CONTENT_SECURITY_POLICY,
-            "default-src 'none'; style-src 'unsafe-inline'; sandbox",
-        ),
-        Format::Json | Format::Obj | Format::Csv | Format::Step | Format::Igs | Format::Dxf => {
-            response
-        }
-    })
+    let response = file.answer(headers);
+    if format != Format::Svg {
+        return response;
+    }
+    // The label is the user's: no script runs in it whatever it says.
+    respond::with(
+        response,
+        header::CONTENT_SECURITY_POLICY,
+        "default-src 'none'; style-src 'unsafe-inline'; sandbox",
+    )
 }
 
 macro_rules! result_files {
-    ($( $name:ident, $path:literal, $id:literal, $format:expr, $body:ty, $kind:literal, $title:literal; )*) => {
+    ($( $name:ident, $path:literal, $id:literal, $format:expr, $query:ident $(as $shown:ident)?,
+        $body:ty, $kind:literal, $title:literal; )*) => {
         $(
             #[doc = $title]
             #[utoipa::path(
                 get, path = $path, tag = "results", operation_id = $id,
                 params(
                     ("id" = uuid::Uuid, Path, description = "The job"),
+                    $($shown,)?
                     ("Range" = Option<String>, Header, description = "`bytes=first-last`",
                         nullable = false),
                     ("If-None-Match" = Option<String>, Header,
@@ -214,30 +262,47 @@ macro_rules! result_files {
                 State(api): State<Api>,
                 Owner(owner): Owner,
                 Id(id): Id,
-                _: Asked<Nothing>,
+                Asked(query): Asked<$query>,
                 headers: HeaderMap,
             ) -> Result<Response, ApiError> {
-                file(api, owner, id, headers, $format).await
+                let stored = stored(&api, owner, id).await?;
+                whole(&api, stored, query.form($format)?, &headers).await
             }
         )*
     };
 }
 
 result_files! {
-    result_json, "/v1/jobs/{id}/result.json", "get_result_json", Format::Json, ResultDocument,
-        "application/json", "The result as a JSON file";
-    result_obj, "/v1/jobs/{id}/result.obj", "get_result_obj", Format::Obj, String,
-        "model/obj", "The plates as a triangle mesh, watertight along shared chines";
-    result_csv, "/v1/jobs/{id}/result.csv", "get_result_csv", Format::Csv, String,
-        "text/csv", "The table of rulings";
-    result_svg, "/v1/jobs/{id}/result.svg", "get_result_svg", Format::Svg, String,
-        "image/svg+xml", "The lines plan with the rulings coloured by twist";
-    result_step, "/v1/jobs/{id}/result.step", "get_result_step", Format::Step, String,
-        "model/step", "The surfaces for CAD, sewn along shared edges, with the curves beside them";
-    result_igs, "/v1/jobs/{id}/result.igs", "get_result_igs", Format::Igs, String,
-        "model/iges", "The surfaces and curves for older CAD";
-    result_dxf, "/v1/jobs/{id}/result.dxf", "get_result_dxf", Format::Dxf, String,
-        "image/vnd.dxf", "The flat patterns for the cutting table, true to size";
+    result_json, "/v1/jobs/{id}/result.json", "get_result_json", Format::Json, Nothing,
+        ResultDocument, "application/json", "The result as a JSON file";
+    result_obj, "/v1/jobs/{id}/result.obj", "get_result_obj", Format::Obj,
+        UnitsQuery as UnitsQuery, String, "model/obj",
+        "The surfaces as a triangle mesh, watertight along shared borders";
+    result_stl, "/v1/jobs/{id}/result.stl", "get_result_stl", Format::Stl,
+        UnitsQuery as UnitsQuery, RawBytes, "model/stl", "The same mesh, triangles alone (binary)";
+    result_ply, "/v1/jobs/{id}/result.ply", "get_result_ply", Format::Ply,
+        UnitsQuery as UnitsQuery, RawBytes, "application/x-ply",
+        "The same mesh with a colour and a value a vertex (binary)";
+    result_glb, "/v1/jobs/{id}/result.glb", "get_result_glb", Format::Glb,
+        UnitsQuery as UnitsQuery, RawBytes, "model/gltf-binary",
+        "The same mesh as a scene: named parts, colours, values, lines";
+    result_csv, "/v1/jobs/{id}/result.csv", "get_result_csv", Format::Csv,
+        UnitsQuery as UnitsQuery, String, "text/csv",
+        "The table: rulings, workshop sheets, corrections, bill of quantities";
+    result_svg, "/v1/jobs/{id}/result.svg", "get_result_svg", Format::Svg,
+        UnitsQuery as UnitsQuery, String, "image/svg+xml",
+        "The drawing: lines plan, flat pattern, plot";
+    result_step, "/v1/jobs/{id}/result.step", "get_result_step", Format::Step,
+        UnitsQuery as UnitsQuery, String, "model/step",
+        "The surfaces for CAD, sewn along shared edges, with the curves beside them";
+    result_igs, "/v1/jobs/{id}/result.igs", "get_result_igs", Format::Igs,
+        UnitsQuery as UnitsQuery, String, "model/iges",
+        "The surfaces and curves for older CAD";
+    result_dxf, "/v1/jobs/{id}/result.dxf", "get_result_dxf", Format::Dxf,
+        CuttingQuery as CuttingQuery, String, "image/vnd.dxf",
+        "The flat patterns for the cutting table, true to size";
+    result_zip, "/v1/jobs/{id}/result.zip", "get_result_zip", Format::Zip, Nothing, RawBytes,
+        "application/zip", "All forms of the result with the job";
 }
 
 /// How a job went

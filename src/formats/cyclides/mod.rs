@@ -1,9 +1,12 @@
-//! A net of patches as its writers draw it: the mesh, the bill of its arcs.
+//! A net of patches as its writers draw it: the lattice of its mesh, the bill
+//! of its arcs.
 
 mod bill;
 mod mesh;
 #[cfg(test)]
 mod tests;
+
+pub(super) use mesh::{Lattice, Place};
 
 use crate::geometry::BSplineSurface;
 
@@ -27,6 +30,8 @@ pub struct NetDrawing {
 pub struct PatchSheet {
     /// What it is called.
     pub name: String,
+    /// What stands before row and column in the name of a patch.
+    pub prefix: String,
     /// Rows and columns of patches.
     pub counts: [usize; 2],
     /// Whether u, whether v closes.
@@ -50,13 +55,6 @@ pub struct MemberLine {
     pub angle_deg: f64,
     /// Angle between the nodes' normals about the chord, degrees.
     pub torsion_deg: f64,
-}
-
-/// All surfaces as Wavefront OBJ, one object each: triangles, watertight
-/// across the borders of patches, the winding that of ∂S/∂u × ∂S/∂v.
-#[must_use]
-pub fn mesh(drawing: &NetDrawing) -> String {
-    mesh::write(drawing)
 }
 
 /// The bill of the arcs as RFC 4180 comma-separated values, one record an arc.

@@ -1,6 +1,8 @@
 //! The files of a small net.
 
 use super::{MemberLine, NetDrawing, PatchSheet};
+use crate::formats::length_unit::LengthUnit;
+use crate::formats::mesh_out::{MeshDrawing, Reference};
 use crate::geometry::{CyclideCorner, CyclidePatch};
 use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
@@ -25,6 +27,7 @@ fn ring(n: usize) -> PatchSheet {
     };
     PatchSheet {
         name: "cyclide spline".into(),
+        prefix: "patch ".into(),
         counts: [n, 2],
         closed: [true, false],
         patches: (0..n).flat_map(|i| [(i, 0), (i, 1)]).map(patch).collect(),
@@ -48,32 +51,46 @@ fn drawing() -> NetDrawing {
     }
 }
 
+fn mesh_of(sheet: PatchSheet) -> MeshDrawing {
+    let drawing = NetDrawing {
+        sheets: vec![sheet],
+        ..drawing()
+    };
+    MeshDrawing::of_net(&drawing, LengthUnit::Metre, Reference::Itself)
+}
+
 #[test]
 fn the_mesh_closes_and_has_no_slits() {
-    let text = super::mesh(&drawing());
-    let mut vertices = Vec::new();
+    let mesh = mesh_of(ring(7));
     let mut edges: HashMap<[usize; 2], usize> = HashMap::new();
-    for line in text.lines() {
-        let words: Vec<&str> = line.split(' ').collect();
-        match words[0] {
-            "v" => vertices.push([1, 2, 3].map(|i| words[i].parse::<f64>().unwrap())),
-            "f" => {
-                let f = [1, 2, 3].map(|i| words[i].split('/').next().unwrap().parse().unwrap());
-                for [a, b] in [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]] {
-                    *edges.entry([a, b]).or_default() += 1;
-                }
+    for part in &mesh.parts {
+        for triangle in &part.triangles {
+            let f = triangle.map(|i| part.corners[i]);
+            for [a, b] in [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]] {
+                *edges.entry([a, b]).or_default() += 1;
             }
-            _ => {}
         }
     }
-    for [x, y, z] in &vertices {
-        assert!(((x.hypot(*y) - 3.0).hypot(*z) - 1.0).abs() < 1e-12);
+    for p in &mesh.vertices {
+        assert!(((p.x.hypot(p.y) - 3.0).hypot(p.z) - 1.0).abs() < 1e-12);
     }
-    assert_eq!(vertices.len(), 28 * 9);
+    assert_eq!(mesh.vertices.len(), 28 * 9);
     let open = edges.keys().filter(|[a, b]| !edges.contains_key(&[*b, *a]));
     // The two rims, each in one way only.
     assert_eq!(open.count(), 2 * 28);
     assert!(edges.values().all(|n| *n == 1));
+}
+
+#[test]
+fn patches_are_parts_and_their_lines_do_not_turn() {
+    let mesh = mesh_of(ring(7));
+    assert_eq!(mesh.parts.len(), 14);
+    assert_eq!(mesh.parts[3].name, "patch 1,1");
+    // Lines of curvature, to rounding.
+    let turns = mesh.parts.iter().flat_map(|p| &p.values);
+    assert!(turns.fold(0.0, |most: f64, t| most.max(*t)) < 1e-9);
+    // 7 arcs on each of 3 rings, 2 on each of 7 lines across.
+    assert_eq!(mesh.lines[0].lines.len(), 3 * 7 + 2 * 7);
 }
 
 #[test]
@@ -89,24 +106,8 @@ fn samples_of_neighbours_agree_on_their_border() {
             .collect(),
         ..whole.clone()
     };
-    let text = |keep| {
-        let drawing = NetDrawing {
-            sheets: vec![gap(keep)],
-            ..drawing()
-        };
-        super::mesh(&drawing)
-    };
-    let vertices = |text: &str| -> Vec<[f64; 3]> {
-        let lines = text.lines().filter_map(|l| l.strip_prefix("v "));
-        lines
-            .map(|l| {
-                let n: Vec<f64> = l.split(' ').map(|n| n.parse().unwrap()).collect();
-                [n[0], n[1], n[2]]
-            })
-            .collect()
-    };
-    let (first, second) = (vertices(&text(0)), vertices(&text(1)));
-    let near = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-12);
+    let [first, second] = [gap(0), gap(1)].map(|sheet| mesh_of(sheet).vertices);
+    let near = |a: &Point3<f64>, b: &Point3<f64>| (a - b).amax() < 1e-12;
     let common = first.iter().filter(|a| second.iter().any(|b| near(a, b)));
     assert_eq!(common.count(), 5);
 }

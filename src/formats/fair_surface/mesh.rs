@@ -8,7 +8,6 @@
 use super::FairSurfaceDrawing;
 use super::delaunay::{Delaunay, RANGE, Site};
 use super::outline::{Outline, distance_to_segment};
-use crate::formats::obj::{one_line, push};
 use crate::geometry::{Axis, BSplineSurface};
 use nalgebra::{Point3, Vector3};
 
@@ -28,44 +27,16 @@ const CLEARANCE: f64 = 0.45;
 /// many an edge is below the resolution of the sites.
 const ROUNDS: usize = 22;
 
-/// A triangulated surface.
-pub(super) struct Mesh {
+/// A triangulated surface; the winding is that of ∂S/∂u × ∂S/∂v throughout.
+pub(in crate::formats) struct Mesh {
     pub vertices: Vec<Point3<f64>>,
     pub normals: Vec<Vector3<f64>>,
+    /// (u, v) of the vertices.
+    pub places: Vec<[f64; 2]>,
     pub triangles: Vec<[usize; 3]>,
     /// The largest distance between a triangle and the surface at the middles
     /// of its edges and its own.
     pub chordal_error: f64,
-}
-
-/// The mesh as text.
-pub(super) fn write(drawing: &FairSurfaceDrawing) -> String {
-    let mesh = build(drawing);
-    let mut text = format!(
-        "# {}\n# lengths in {}; {}\n# {} triangles, within {:.2e} {} of the surface\n",
-        one_line(&drawing.title),
-        one_line(&drawing.units),
-        one_line(&drawing.verdict),
-        mesh.triangles.len(),
-        mesh.chordal_error,
-        one_line(&drawing.units),
-    );
-    for v in &mesh.vertices {
-        push(&mut text, format_args!("v {} {} {}\n", v.x, v.y, v.z));
-    }
-    for n in &mesh.normals {
-        // A unit vector to seven digits is exact to a hundred-thousandth of a degree.
-        push(
-            &mut text,
-            format_args!("vn {:.7} {:.7} {:.7}\n", n.x, n.y, n.z),
-        );
-    }
-    text.push_str("o fair_surface\n");
-    for t in &mesh.triangles {
-        let [a, b, c] = t.map(|i| i + 1);
-        push(&mut text, format_args!("f {a}//{a} {b}//{b} {c}//{c}\n"));
-    }
-    text
 }
 
 /// The lattice: cells in u and v over the domain.
@@ -93,7 +64,7 @@ impl Lattice {
 }
 
 /// Triangulates the surface within its outline.
-pub(super) fn build(drawing: &FairSurfaceDrawing) -> Mesh {
+pub(in crate::formats) fn build(drawing: &FairSurfaceDrawing) -> Mesh {
     let surface = &drawing.surface;
     let outline = Outline::of(drawing);
     let lattice = lattice(surface);
@@ -261,6 +232,7 @@ fn lift(surface: &BSplineSurface, places: &[[f64; 2]], triangles: Vec<[usize; 3]
     let mut mesh = Mesh {
         vertices: Vec::new(),
         normals: Vec::new(),
+        places: Vec::new(),
         triangles,
         chordal_error,
     };
@@ -270,6 +242,7 @@ fn lift(surface: &BSplineSurface, places: &[[f64; 2]], triangles: Vec<[usize; 3]
             if numbers[*corner] == usize::MAX {
                 numbers[*corner] = mesh.vertices.len();
                 mesh.vertices.push(points[*corner]);
+                mesh.places.push([u, v]);
                 // In a pole the triangles about it tell the normal.
                 let about = || flat[*corner].try_normalize(0.0).unwrap_or_else(Vector3::z);
                 mesh.normals

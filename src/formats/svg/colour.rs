@@ -13,13 +13,22 @@ const AT_LIMIT: [f64; 3] = [0.32, 0.14, 270.0];
 /// Twist above the limit.
 pub(super) const ABOVE_LIMIT: &str = "#d0021b";
 
+/// The same as bytes.
+pub(in crate::formats) const ABOVE_LIMIT_RGB: [u8; 3] = [0xd0, 0x02, 0x1b];
+
+/// Colour of a share of the limit in linear sRGB; `None` above the limit and
+/// for what is not a number.
+pub(in crate::formats) fn linear_of_share(share: f64) -> Option<[f64; 3]> {
+    (share <= 1.0).then(|| linear_srgb(ramp(share.max(0.0))))
+}
+
 /// Colour of a twist that is `share` of the limit (0 none, 1 the limit), as
 /// `#rrggbb`. Shares above 1 and what is not a number get the warning colour.
 pub(super) fn of_share(share: f64) -> String {
-    if share.is_nan() || share > 1.0 {
+    let Some(linear) = linear_of_share(share) else {
         return ABOVE_LIMIT.to_owned();
-    }
-    let [r, g, b] = linear_srgb(ramp(share.max(0.0))).map(encode);
+    };
+    let [r, g, b] = linear.map(encode);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
@@ -43,7 +52,7 @@ fn linear_srgb([lightness, a, b]: [f64; 3]) -> [f64; 3] {
 }
 
 /// The transfer function of sRGB (IEC 61966-2-1), to 8 bits.
-fn encode(linear: f64) -> u8 {
+pub(in crate::formats) fn encode(linear: f64) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
     let encoded = if linear <= 0.003_130_8 {
         12.92 * linear
@@ -53,9 +62,30 @@ fn encode(linear: f64) -> u8 {
     (encoded * 255.0).round() as u8
 }
 
+/// Its inverse.
+pub(in crate::formats) fn decode(encoded: u8) -> f64 {
+    let encoded = f64::from(encoded) / 255.0;
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn encoding_and_decoding_undo_each_other() {
+        for byte in 0..=255 {
+            assert_eq!(encode(decode(byte)), byte);
+        }
+        assert_eq!(ABOVE_LIMIT, {
+            let [r, g, b] = ABOVE_LIMIT_RGB;
+            format!("#{r:02x}{g:02x}{b:02x}")
+        });
+    }
 
     fn luminance(colour: &str) -> f64 {
         let channel = |at: usize| f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap());

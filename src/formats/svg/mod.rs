@@ -10,7 +10,7 @@
 //! body overlap.
 
 mod canvas;
-mod colour;
+pub(super) mod colour;
 pub(super) mod fair_curve;
 pub(super) mod fair_surface;
 mod key;
@@ -93,6 +93,7 @@ mod tests {
             plates: vec![PlateDrawing {
                 name: "deck – keel".into(),
                 rulings: rulings.collect(),
+                rolls: Vec::new(),
                 within_limits: twist_deg <= 6.0,
             }],
             profiles: vec![line(0), line(1)],

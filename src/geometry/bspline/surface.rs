@@ -146,6 +146,15 @@ impl BSplineSurface {
         [knots[0], knots[knots.len() - 1]]
     }
 
+    /// The surface scaled about the origin.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        BSplineSurface {
+            control_points: self.control_points.iter().map(|p| p * factor).collect(),
+            ..self.clone()
+        }
+    }
+
     /// The box of the control points, which holds the whole surface.
     #[must_use]
     pub fn bounding_box(&self) -> BoundingBox {

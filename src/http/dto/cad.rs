@@ -1,12 +1,9 @@
-//! From the surfaces and curves that every result has to the files of a CAD
-//! desk.
+//! From the surfaces and curves that every result has to what a CAD desk gets.
 
 use super::curves::{NamedCurve, Surface};
 use super::job::Units;
-use crate::formats::brep::{Path, Sheet, SheetModel, Wire, WireGroup};
+use crate::formats::brep::{Path, Sheet, Wire, WireGroup};
 use crate::formats::length_unit::LengthUnit;
-use crate::formats::{iges, step};
-use crate::http::methods::Format;
 use crate::http::problem::ApiError;
 
 impl From<Units> for LengthUnit {
@@ -50,18 +47,4 @@ pub(super) fn wires(name: &str, curves: &[NamedCurve]) -> Result<WireGroup, ApiE
         name: name.to_owned(),
         wires: curves.iter().map(wire).collect::<Result<_, ApiError>>()?,
     })
-}
-
-/// The model in one of the forms of CAD.
-///
-/// # Errors
-/// Another form, a fault of ours.
-pub(super) fn write(model: &SheetModel, format: Format) -> Result<String, ApiError> {
-    match format {
-        Format::Step => Ok(step::write(model)),
-        Format::Igs => Ok(iges::write(model)),
-        Format::Json | Format::Obj | Format::Csv | Format::Svg | Format::Dxf => {
-            Err(ApiError::internal(&"no form of CAD"))
-        }
-    }
 }

@@ -133,7 +133,7 @@ impl Budget {
 }
 
 /// A unit of length.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Units {
     /// Millimetres.
@@ -324,6 +324,8 @@ pub struct Links {
     pub this: String,
     /// Its result.
     pub result: String,
+    /// The list of its files.
+    pub artifacts: String,
     /// Its diagnostics.
     pub diagnostics: String,
     /// The body as it was posted.
@@ -339,6 +341,7 @@ impl Links {
         let this = format!("/v1/jobs/{id}");
         Links {
             result: format!("{this}/result"),
+            artifacts: format!("{this}/artifacts"),
             diagnostics: format!("{this}/diagnostics"),
             input: format!("{this}/input"),
             cancel: format!("{this}/cancel"),

@@ -1,7 +1,7 @@
 //! `cone_spline` as the HTTP layer knows it.
 
 use super::file::take_mesh;
-use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
+use super::{Document, Fitted, Format, Header, Job, Method, Schemas, Words, misread};
 use crate::http::dto::Point;
 use crate::http::dto::cone_spline::{
     ConeSplineInput, ConeSplineOptions, ConeSplineResult, to_request,
@@ -103,10 +103,8 @@ impl Method for ConeSpline {
             .map_err(|fault| ApiError::at(Code::InvalidJob, vec![fault]))
     }
 
-    fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError> {
-        let document: ConeSplineResult =
-            serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
-        document.write(format)
+    fn open(&self, result: &[u8]) -> Result<Box<dyn Document>, ApiError> {
+        super::read_back::<ConeSplineResult>(result)
     }
 }
 

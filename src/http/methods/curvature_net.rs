@@ -1,7 +1,7 @@
 //! `curvature_net` as the HTTP layer knows it.
 
 use super::file::take_mesh;
-use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
+use super::{Document, Fitted, Format, Header, Job, Method, Schemas, Words, misread};
 use crate::http::dto::Point;
 use crate::http::dto::curvature_net::{
     CurvatureNetInput, CurvatureNetOptions, CurvatureNetResult, to_request,
@@ -102,10 +102,8 @@ impl Method for CurvatureNet {
         take_mesh(job, file, &["grid"]).map_err(|fault| ApiError::at(Code::InvalidJob, vec![fault]))
     }
 
-    fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError> {
-        let document: CurvatureNetResult =
-            serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
-        document.write(format)
+    fn open(&self, result: &[u8]) -> Result<Box<dyn Document>, ApiError> {
+        super::read_back::<CurvatureNetResult>(result)
     }
 }
 

@@ -1,7 +1,7 @@
 //! `fairing` as the HTTP layer knows it.
 
 use super::file::input_for_file;
-use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
+use super::{Document, Fitted, Format, Header, Job, Method, Schemas, Words, misread};
 use crate::formats::points_in::{self, Fault, Orientation, ReadError, Ruler};
 use crate::http::dto::Point;
 use crate::http::dto::fairing::{
@@ -84,11 +84,15 @@ impl Method for Fairing {
     fn formats(&self) -> &'static [Format] {
         &[
             Format::Json,
+            Format::Obj,
+            Format::Stl,
+            Format::Ply,
+            Format::Glb,
             Format::Csv,
             Format::Svg,
-            Format::Obj,
             Format::Step,
             Format::Igs,
+            Format::Zip,
         ]
     }
 
@@ -106,10 +110,8 @@ impl Method for Fairing {
         take_file(job, file).map_err(|fault| ApiError::at(Code::InvalidJob, vec![fault]))
     }
 
-    fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError> {
-        let document: FairingResult =
-            serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
-        document.write(format)
+    fn open(&self, result: &[u8]) -> Result<Box<dyn Document>, ApiError> {
+        super::read_back::<FairingResult>(result)
     }
 }
 

@@ -1,9 +1,6 @@
 //! `hull_plates` as the HTTP layer knows it.
 
-use super::{Fitted, Format, Header, Job, Method, Schemas, Words, misread};
-use crate::formats::dxf::Version;
-use crate::formats::plates::HullDrawing;
-use crate::formats::{csv, obj, patterns, svg};
+use super::{Document, Fitted, Format, Header, Job, Method, Schemas, Words, misread};
 use crate::http::dto::Point;
 use crate::http::dto::hull_plates::{
     HullPlatesInput, HullPlatesOptions, HullPlatesResult, ProfileCurve, flat_patterns, to_request,
@@ -82,11 +79,15 @@ impl Method for HullPlates {
         &[
             Format::Json,
             Format::Obj,
+            Format::Stl,
+            Format::Ply,
+            Format::Glb,
             Format::Csv,
             Format::Svg,
             Format::Step,
             Format::Igs,
             Format::Dxf,
+            Format::Zip,
         ]
     }
 
@@ -98,21 +99,8 @@ impl Method for HullPlates {
         Ok(Box::new(PlatesJob::read(value)?))
     }
 
-    fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError> {
-        let document: HullPlatesResult =
-            serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
-        let drawing = HullDrawing::from(&document);
-        match format {
-            Format::Obj => Ok(obj::write(&drawing)),
-            Format::Csv => Ok(csv::roll_table(&drawing, &document.roll_rows())),
-            Format::Svg => Ok(svg::lines_plan(&drawing, Some(&document.pattern_sheet()))),
-            Format::Step | Format::Igs => document.write_cad(format),
-            Format::Dxf => Ok(patterns::cutting_drawing(
-                &document.pattern_sheet(),
-                Version::R2000,
-            )),
-            Format::Json => Err(ApiError::internal(&"no form to be written")),
-        }
+    fn open(&self, result: &[u8]) -> Result<Box<dyn Document>, ApiError> {
+        super::read_back::<HullPlatesResult>(result)
     }
 }
 

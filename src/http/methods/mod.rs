@@ -5,13 +5,15 @@
 
 pub mod cone_spline;
 pub mod curvature_net;
+pub mod document;
 pub mod fairing;
 pub mod file;
 mod format;
 pub mod hull_plates;
 mod resource;
 
-pub use format::Format;
+pub use document::Document;
+pub use format::{Form, Format};
 pub use resource::Words;
 pub(super) use resource::routes;
 
@@ -64,11 +66,18 @@ pub trait Method: Sync {
         let fault = FieldError::new("file", "unexpected", message);
         Err(ApiError::at(Code::InvalidJob, vec![fault]))
     }
+    /// Reads a stored result back.
+    ///
+    /// # Errors
+    /// One that is not of this method; a fault of ours.
+    fn open(&self, result: &[u8]) -> Result<Box<dyn Document>, ApiError>;
     /// Writes a stored result in another form.
     ///
     /// # Errors
     /// `format-not-available` where this result has no such form.
-    fn write(&self, format: Format, result: &[u8]) -> Result<String, ApiError>;
+    fn write(&self, form: Form, result: &[u8]) -> Result<Vec<u8>, ApiError> {
+        document::write(&*self.open(result)?, form)
+    }
 }
 
 /// A job that was read and may be queued or fitted.
@@ -178,6 +187,14 @@ pub(super) fn rule_of<J: ToSchema>() -> Result<Rule, String> {
 #[allow(clippy::needless_pass_by_value)] // As `map_err` hands it over.
 fn misread(error: serde_json::Error) -> Vec<FieldError> {
     vec![FieldError::new("", "invalid", error.to_string())]
+}
+
+/// A stored result as the document that a method reads.
+fn read_back<D: Document + serde::de::DeserializeOwned + 'static>(
+    result: &[u8],
+) -> Result<Box<dyn Document>, ApiError> {
+    let document: D = serde_json::from_slice(result).map_err(|e| ApiError::internal(&e))?;
+    Ok(Box::new(document))
 }
 
 fn json_line(value: &impl serde::Serialize) -> Result<Vec<u8>, FitError> {

@@ -101,6 +101,18 @@ pub(super) fn to_mesh(mesh: &MeshIndex, samples: &[Sample]) -> Distance {
     figures(samples.iter().zip(apart).map(of)).0
 }
 
+/// The vertices' distances at places on the patches: within the nearest triangle
+/// from its corners. (The triangles themselves leave the patches by more where
+/// they are large: that is theirs, not the fit's.)
+pub(super) fn carried(mesh: &MeshIndex, homes: &[Home], places: &[Point3<f64>]) -> Vec<f64> {
+    let at = |place: &Point3<f64>| {
+        let nearest = mesh.nearest(place);
+        let corners = nearest.corners.iter().zip(nearest.shares);
+        corners.map(|(c, share)| share * homes[*c].distance).sum()
+    };
+    places.par_iter().map(at).collect()
+}
+
 /// Figures of distances at places that stand for areas, and which is largest.
 fn figures(all: impl Iterator<Item = (Point3<f64>, f64, f64)>) -> (Distance, Option<usize>) {
     let mut figures = Distance {

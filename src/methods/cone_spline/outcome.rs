@@ -41,6 +41,19 @@ pub struct Outcome {
     pub report: Report,
 }
 
+/// Places on a patch inside its outline.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Places in a row, which runs along a ruling from side 0 to side 1.
+    pub across: usize,
+    /// The places, row after row, the first row at the least s. A row shrinks
+    /// to a point in a corner of the strip.
+    pub points: Vec<Point3<f64>>,
+    /// The signed distance of the strip there: that of its vertices, between
+    /// them as over its triangles.
+    pub distances: Vec<f64>,
+}
+
 /// What a patch is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -135,6 +148,8 @@ pub struct Patch {
     pub surface: BSplineSurface,
     /// Area inside the outline.
     pub area: f64,
+    /// Places all over it, to show it by.
+    pub grid: Grid,
     /// Vertices of the strip that belong to it.
     pub vertices: usize,
     /// Largest distance of those.

@@ -39,8 +39,12 @@ pub(super) fn outcome(
     let homes = distances::homes(&fitted.chain, &target.points);
     let fits = distances::fits(&homes, &target.weights, fitted.chain.len());
     let thickness = request.options.thickness;
-    let sheets = sheet::sheets(&fitted.chain, target, &fits, thickness)
+    let mut sheets = sheet::sheets(&fitted.chain, target, &fits, thickness)
         .map_err(|e| FitError::Numerical(format!("a patch is no surface: {e}")))?;
+    let triangles = index(target)?;
+    for patch in &mut sheets.patches {
+        patch.grid.distances = distances::carried(&triangles, &homes, &patch.grid.points);
+    }
     let mut outcome = Outcome {
         within_limits: false,
         summary: Vec::new(),
@@ -52,7 +56,7 @@ pub(super) fn outcome(
         pattern: sheets.pattern,
         error_curve: fitted.error_curve,
         to_surface: distances::to_surface(target, &homes),
-        to_mesh: distances::to_mesh(&index(target)?, &sheets.samples),
+        to_mesh: distances::to_mesh(&triangles, &sheets.samples),
         vertex_distances: homes.iter().map(|h| h.distance).collect(),
         floor: fitted.floor,
         reachable: fitted.reachable,

@@ -129,11 +129,3 @@ fn nonsense_gives_the_whole_surface_or_nothing() {
     );
     assert!((check(&build(&beyond)).0 - 8.0).abs() < 1e-6);
 }
-
-#[test]
-fn the_file_says_how_near_it_is() {
-    let text = write(&dome(circle([0.5, 0.5], 0.3, 30), Vec::new()));
-    assert!(text.contains("# lengths in m; within_limits\n"));
-    assert!(text.contains(" triangles, within ") && text.contains("\nf 1//1 "));
-    assert_eq!(text, write(&dome(circle([0.5, 0.5], 0.3, 30), Vec::new())));
-}

@@ -5,38 +5,37 @@ use super::patch::ConePatch;
 use super::result::{ConePatternPiece, ConeRuling};
 use crate::formats::brep::SheetModel;
 use crate::formats::cones::{self, ConeSheet, ConeSplineDrawing, EndRuling};
-use crate::formats::dxf::Version;
+use crate::formats::length_unit::LengthUnit;
+use crate::formats::measured::in_unit;
+use crate::formats::mesh_out::{ConeGrid, MeshDrawing};
 use crate::formats::patterns::{self, Pattern, PatternSheet};
 use crate::http::dto::cad;
 use crate::http::dto::curves::Point;
-use crate::http::methods::Format;
+use crate::http::methods::cone_spline::ConeSpline;
+use crate::http::methods::{Document, Format, Method as _};
 use crate::http::problem::ApiError;
 use nalgebra::{Point2, Point3, Vector2};
 
 /// The title of a drawing whose job has no label.
 const UNTITLED: &str = "Cone spline";
 
-impl ConeSplineResult {
-    /// The result in another form.
-    ///
-    /// # Errors
-    /// A stored result whose splines are none.
-    pub fn write(&self, format: Format) -> Result<String, ApiError> {
-        match format {
-            Format::Json => Err(ApiError::internal(&"JSON is what is stored")),
-            Format::Obj => Ok(cones::mesh(&self.drawing())),
-            Format::Csv => Ok(cones::workshop_table(&self.drawing())),
-            Format::Svg => Ok(patterns::page(&self.pattern_sheet())),
-            Format::Dxf => Ok(patterns::cutting_drawing(
-                &self.pattern_sheet(),
-                Version::R2000,
-            )),
-            Format::Step | Format::Igs => cad::write(&self.model()?, format),
-        }
+impl Document for ConeSplineResult {
+    fn units(&self) -> LengthUnit {
+        self.units.into()
     }
 
-    fn title(&self) -> String {
-        self.label.clone().unwrap_or_else(|| UNTITLED.to_owned())
+    fn formats(&self) -> Vec<Format> {
+        ConeSpline.formats().to_vec()
+    }
+
+    fn mesh(&self) -> Result<MeshDrawing, ApiError> {
+        let tolerance = self.method_specific.options.tolerance;
+        let drawing = self.drawing(self.units.into());
+        Ok(MeshDrawing::of_cones(
+            &drawing,
+            self.units.into(),
+            tolerance,
+        ))
     }
 
     fn model(&self) -> Result<SheetModel, ApiError> {
@@ -50,43 +49,73 @@ impl ConeSplineResult {
         })
     }
 
-    fn drawing(&self) -> ConeSplineDrawing {
-        ConeSplineDrawing {
+    fn table(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        Ok(cones::workshop_table(&self.drawing(unit)))
+    }
+
+    fn picture(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        Ok(patterns::page(&self.pattern_sheet(unit)))
+    }
+
+    fn patterns(&self, unit: LengthUnit) -> Option<PatternSheet> {
+        Some(self.pattern_sheet(unit))
+    }
+
+    fn part_word(&self) -> &'static str {
+        "patch"
+    }
+
+    fn part_tables(&self) -> usize {
+        self.method_specific.patches.len()
+    }
+
+    fn part_table(&self, part: usize, unit: LengthUnit) -> Result<Option<String>, ApiError> {
+        let mut drawing = self.drawing(unit);
+        if part >= drawing.sheets.len() || part + 1 >= drawing.rulings.len() {
+            return Ok(None);
+        }
+        drawing.sheets = vec![drawing.sheets.swap_remove(part)];
+        drawing.rulings = drawing.rulings[part..=part + 1].to_vec();
+        Ok(Some(cones::workshop_table(&drawing)))
+    }
+}
+
+impl ConeSplineResult {
+    fn title(&self) -> String {
+        self.label.clone().unwrap_or_else(|| UNTITLED.to_owned())
+    }
+
+    fn drawing(&self, unit: LengthUnit) -> ConeSplineDrawing {
+        let specific = &self.method_specific;
+        let drawing = ConeSplineDrawing {
             title: self.title(),
             units: self.units.to_string(),
             verdict: self.verdict.to_string(),
-            sheets: self
-                .method_specific
-                .patches
-                .iter()
-                .map(Into::into)
-                .collect(),
-            rulings: self
-                .method_specific
-                .rulings
-                .iter()
-                .map(Into::into)
-                .collect(),
-        }
+            sheets: specific.patches.iter().map(Into::into).collect(),
+            rulings: specific.rulings.iter().map(Into::into).collect(),
+        };
+        in_unit(drawing, self.units.into(), unit)
     }
 
-    fn pattern_sheet(&self) -> PatternSheet {
+    fn pattern_sheet(&self, unit: LengthUnit) -> PatternSheet {
+        let own: LengthUnit = self.units.into();
         let pieces = self.method_specific.pattern.iter();
-        PatternSheet {
+        let sheet = PatternSheet {
             title: self.title(),
             unit_name: self.units.to_string(),
-            units: self.units.into(),
-            patterns: pieces.map(|piece| self.pattern(piece)).collect(),
+            units: own,
+            patterns: (pieces.map(|piece| self.pattern(piece, own.in_terms_of(unit)))).collect(),
             none: "There is no flat pattern.",
             verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
-        }
+        };
+        in_unit(sheet, own, unit)
     }
 
     /// A piece with its bend lines, the rulings between its patches, its base
     /// line (straight, from corner to corner along side 0) and the names of its
-    /// patches.
-    fn pattern(&self, piece: &ConePatternPiece) -> Pattern {
+    /// patches, in whose words lengths are scaled.
+    fn pattern(&self, piece: &ConePatternPiece, scale: f64) -> Pattern {
         let [first, end] = piece.patches.numbers();
         let patches = self
             .method_specific
@@ -118,7 +147,7 @@ impl ConeSplineResult {
                 .chain(rulings.iter().map(flat))
                 .collect(),
             labels: (patches.iter().zip(rulings.windows(2)))
-                .map(|(p, pair)| (middle(&[flat(&pair[0]), flat(&pair[1])]), caption(p)))
+                .map(|(p, pair)| (middle(&[flat(&pair[0]), flat(&pair[1])]), caption(p, scale)))
                 .collect(),
             side: "front side",
             ..Pattern::default()
@@ -132,11 +161,11 @@ fn middle(rulings: &[[Point2<f64>; 2]]) -> Point2<f64> {
     Point2::from(sum / ends().count().max(1) as f64)
 }
 
-fn caption(patch: &ConePatch) -> String {
+fn caption(patch: &ConePatch, scale: f64) -> String {
     use super::KindWord;
     match (patch.kind, patch.half_angle_deg, patch.radius) {
         (KindWord::Cone, Some(angle), _) => format!("{}: cone {angle:.2}°", patch.name),
-        (KindWord::Cylinder, _, Some(radius)) => format!("{}: R {radius:.4}", patch.name),
+        (KindWord::Cylinder, _, Some(radius)) => format!("{}: R {:.4}", patch.name, radius * scale),
         _ => format!("{}: plane", patch.name),
     }
 }
@@ -170,6 +199,11 @@ impl From<&ConePatch> for ConeSheet {
                 BendSideWord::Back => "back",
             }),
             sides: p.trims.each_ref().map(|t| points(&t.points)),
+            grid: ConeGrid {
+                across: p.grid.across,
+                points: points(&p.grid.points),
+                distances: p.grid.distances.clone(),
+            },
             area: p.area,
             errors: [p.error_max, p.error_mean],
         }

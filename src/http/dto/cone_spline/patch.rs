@@ -4,7 +4,7 @@ use super::super::curves::{Point, finite};
 use super::super::flat::FlatPoint;
 use super::super::index::IndexPair;
 use super::KindWord;
-use crate::methods::cone_spline::outcome::{Axis, BendSide, FlatSector, Kind, Patch, Trim};
+use crate::methods::cone_spline::outcome::{Axis, BendSide, FlatSector, Grid, Kind, Patch, Trim};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -58,12 +58,28 @@ pub struct ConePatch {
     pub bend_lines: Vec<[FlatPoint; 2]>,
     /// Area inside the outline.
     pub area: f64,
+    /// Places all over it with their distances; values to colour by.
+    pub grid: ConeGrid,
     /// Vertices of the strip that belong to it.
     pub vertices: usize,
     /// Largest distance of those.
     pub error_max: f64,
     /// Mean distance of those, by area.
     pub error_mean: f64,
+}
+
+/// Places on a patch inside its outline.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
+pub struct ConeGrid {
+    /// Places in a row, which runs along a ruling from side 0 of the strip to
+    /// side 1.
+    pub across: usize,
+    /// The places, row after row; in a corner of the strip a row shrinks to a
+    /// point.
+    pub points: Vec<Point>,
+    /// Signed distance of the strip at each: that of its vertices
+    /// (`vertex_distances`), between them as over its triangles.
+    pub distances: Vec<f64>,
 }
 
 /// A line in space.
@@ -142,9 +158,20 @@ impl From<&Patch> for ConePatch {
             flat: (&p.flat).into(),
             bend_lines: p.bend_lines.iter().map(|l| l.map(Into::into)).collect(),
             area: p.area,
+            grid: (&p.grid).into(),
             vertices: p.vertices,
             error_max: p.error_max,
             error_mean: p.error_mean,
+        }
+    }
+}
+
+impl From<&Grid> for ConeGrid {
+    fn from(grid: &Grid) -> Self {
+        ConeGrid {
+            across: grid.across,
+            points: grid.points.iter().map(|p| (*p).into()).collect(),
+            distances: grid.distances.clone(),
         }
     }
 }

@@ -6,12 +6,15 @@ use super::result::{CYCLIDE, OFFSET, SMOOTH};
 use super::specific::{MemberResult, SheetResult};
 use crate::formats::brep::SheetModel;
 use crate::formats::cyclides::{self, MemberLine, NetDrawing, PatchSheet};
-use crate::formats::dxf::Version;
+use crate::formats::length_unit::LengthUnit;
+use crate::formats::measured::in_unit;
+use crate::formats::mesh_out::{MeshDrawing, Reference};
 use crate::formats::patterns::{self, Pattern, PatternSheet};
 use crate::geometry::{Axis, BSplineSurface};
 use crate::http::dto::cad;
 use crate::http::dto::curves::Surface;
-use crate::http::methods::Format;
+use crate::http::methods::curvature_net::CurvatureNet;
+use crate::http::methods::{Document, Format, Method as _};
 use crate::http::problem::ApiError;
 use std::collections::HashMap;
 
@@ -20,23 +23,26 @@ const UNTITLED: &str = "Curvature net";
 /// Points of a pattern's edge from vertex to vertex, one counted.
 const PER_PIECE: usize = crate::methods::curvature_net::structure::flat::SAMPLES;
 
-impl CurvatureNetResult {
-    /// The result in another form.
-    ///
-    /// # Errors
-    /// A stored result whose splines are none.
-    pub fn write(&self, format: Format) -> Result<String, ApiError> {
-        match format {
-            Format::Json => Err(ApiError::internal(&"JSON is what is stored")),
-            Format::Obj => Ok(cyclides::mesh(&self.drawing(self.sheets()?))),
-            Format::Csv => Ok(cyclides::bill_of_quantities(&self.drawing(Vec::new()))),
-            Format::Svg => Ok(patterns::page(&self.pattern_sheet())),
-            Format::Dxf => Ok(patterns::cutting_drawing(
-                &self.pattern_sheet(),
-                Version::R2000,
-            )),
-            Format::Step | Format::Igs => cad::write(&self.model()?, format),
-        }
+impl Document for CurvatureNetResult {
+    fn units(&self) -> LengthUnit {
+        self.units.into()
+    }
+
+    fn formats(&self) -> Vec<Format> {
+        CurvatureNet.formats().to_vec()
+    }
+
+    /// The cyclide spline and its offsets; without them the smooth surface.
+    fn mesh(&self) -> Result<MeshDrawing, ApiError> {
+        let own: LengthUnit = self.units.into();
+        let drawing = self.drawing(self.sheets()?, own);
+        let smooth = self.surfaces.iter().find(|s| s.role == SMOOTH);
+        let smooth = smooth.map(Surface::tensor).transpose()?;
+        let reference = match &smooth {
+            Some(smooth) if self.is_built() => Reference::Smooth(smooth),
+            _ => Reference::Itself,
+        };
+        Ok(MeshDrawing::of_net(&drawing, own, reference))
     }
 
     /// The faces of the cyclide spline and its offsets; without them the
@@ -57,41 +63,64 @@ impl CurvatureNetResult {
         })
     }
 
+    fn table(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        Ok(cyclides::bill_of_quantities(
+            &self.drawing(Vec::new(), unit),
+        ))
+    }
+
+    fn picture(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        Ok(patterns::page(&self.pattern_sheet(unit)))
+    }
+
+    fn patterns(&self, unit: LengthUnit) -> Option<PatternSheet> {
+        Some(self.pattern_sheet(unit))
+    }
+
+    fn part_word(&self) -> &'static str {
+        "patch"
+    }
+}
+
+impl CurvatureNetResult {
+    /// Whether there is a cyclide spline.
+    fn is_built(&self) -> bool {
+        self.surfaces.iter().any(|s| s.role == CYCLIDE)
+    }
+
     fn title(&self) -> String {
         self.label.clone().unwrap_or_else(|| UNTITLED.to_owned())
     }
 
-    fn drawing(&self, sheets: Vec<PatchSheet>) -> NetDrawing {
-        NetDrawing {
+    fn drawing(&self, sheets: Vec<PatchSheet>, unit: LengthUnit) -> NetDrawing {
+        let members = self.method_specific.members.iter();
+        let drawing = NetDrawing {
             title: self.title(),
             units: self.units.to_string(),
             sheets,
-            members: self
-                .method_specific
-                .members
-                .iter()
-                .map(Into::into)
-                .collect(),
+            members: members.map(Into::into).collect(),
             verdict: self.verdict.to_string(),
-        }
+        };
+        in_unit(drawing, self.units.into(), unit)
     }
 
-    fn pattern_sheet(&self) -> PatternSheet {
-        PatternSheet {
+    fn pattern_sheet(&self, unit: LengthUnit) -> PatternSheet {
+        let sheet = PatternSheet {
             title: self.title(),
             unit_name: self.units.to_string(),
             units: self.units.into(),
-            patterns: self.patterns(),
+            patterns: self.pieces(),
             none: "There are no flat patterns: ask for \"strips\" or \"supports\".",
             verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
-        }
+        };
+        in_unit(sheet, self.units.into(), unit)
     }
 
     /// The cyclide spline and its offsets; without them the smooth surface.
     fn sheets(&self) -> Result<Vec<PatchSheet>, ApiError> {
         let of_role = |role: &'static str| self.surfaces.iter().filter(move |s| s.role == role);
-        if of_role(CYCLIDE).next().is_none() {
+        if !self.is_built() {
             let smooth = of_role(SMOOTH).map(|s| cells(&s.tensor()?, &s.name, self.closed()));
             return smooth.collect();
         }
@@ -118,6 +147,7 @@ impl CurvatureNetResult {
         });
         Ok(PatchSheet {
             name: name.to_owned(),
+            prefix: prefix.to_owned(),
             counts,
             closed: self.closed(),
             patches: patches.collect::<Result<_, _>>()?,
@@ -129,7 +159,7 @@ impl CurvatureNetResult {
         [DirectionWord::U, DirectionWord::V].map(|d| closed.contains(&d))
     }
 
-    fn patterns(&self) -> Vec<Pattern> {
+    fn pieces(&self) -> Vec<Pattern> {
         let specific = &self.method_specific;
         let along = |name: &str| if name.starts_with('u') { "u" } else { "v" };
         let strips = specific.strips.iter().map(|s| {
@@ -199,6 +229,7 @@ fn cells(surface: &BSplineSurface, name: &str, closed: [bool; 2]) -> Result<Patc
     }
     Ok(PatchSheet {
         name: name.to_owned(),
+        prefix: "patch ".to_owned(),
         counts: [strips.len(), patches.len() / strips.len().max(1)],
         closed,
         patches,

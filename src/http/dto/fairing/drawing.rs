@@ -8,46 +8,50 @@ use crate::formats::brep::SheetModel;
 use crate::formats::fair_curve::{self, FairCurveDrawing, Tooth};
 use crate::formats::fair_points::FairPoint;
 use crate::formats::fair_surface::{self, FairSurfaceDrawing, Isophotes};
+use crate::formats::length_unit::LengthUnit;
+use crate::formats::measured::in_unit;
+use crate::formats::mesh_out::MeshDrawing;
 use crate::formats::offsets::{self, Cell, OffsetsDrawing, Orientation};
 use crate::geometry::BSplineCurve;
 use crate::http::dto::cad;
-use crate::http::methods::Format;
-use crate::http::problem::{ApiError, Code};
-use nalgebra::Vector3;
+use crate::http::methods::fairing::Fairing;
+use crate::http::methods::{Document, Format, Method as _};
+use crate::http::problem::ApiError;
+use nalgebra::{Point3, Vector3};
 use std::collections::HashMap;
 
 /// The title of a drawing whose job has no label.
 const UNTITLED: &str = "Fairing";
 
-impl FairingResult {
-    /// The result in another form.
-    ///
-    /// # Errors
-    /// `format-not-available` for the mesh of a curve; a stored result whose
-    /// splines are none.
-    pub fn write(&self, format: Format) -> Result<String, ApiError> {
-        match (self.method_specific.kind, format) {
-            (_, Format::Json | Format::Dxf) => Err(ApiError::internal(&"no form to be written")),
-            (_, Format::Step | Format::Igs) => cad::write(&self.sheet_model()?, format),
-            (FairedKind::Curve, Format::Obj) => {
-                let detail = "a curve has no mesh; there are json, csv, svg, step, igs";
-                Err(ApiError::new(Code::FormatNotAvailable, detail))
-            }
-            (FairedKind::Curve, Format::Csv) => Ok(fair_curve::correction_table(&self.curve()?)),
-            (FairedKind::Curve, Format::Svg) => Ok(fair_curve::plot(&self.curve()?)),
-            (FairedKind::Offsets, Format::Csv) => Ok(offsets::table(&self.offsets()?)),
-            (FairedKind::Offsets, Format::Svg) => Ok(offsets::lines_plan(&self.offsets()?)),
-            (FairedKind::Surface, Format::Csv) => {
-                Ok(fair_surface::correction_table(&self.surface()?))
-            }
-            (FairedKind::Surface, Format::Svg) => Ok(fair_surface::plot(&self.surface()?)),
-            (FairedKind::Surface | FairedKind::Offsets, Format::Obj) => {
-                Ok(fair_surface::mesh(&self.surface()?))
-            }
-        }
+impl Document for FairingResult {
+    fn units(&self) -> LengthUnit {
+        self.units.into()
     }
 
-    fn sheet_model(&self) -> Result<SheetModel, ApiError> {
+    /// A curve has no mesh.
+    fn formats(&self) -> Vec<Format> {
+        let formats = Fairing.formats().iter().copied();
+        let is_curve = self.method_specific.kind == FairedKind::Curve;
+        formats.filter(|f| !(is_curve && f.is_mesh())).collect()
+    }
+
+    fn mesh(&self) -> Result<MeshDrawing, ApiError> {
+        let own: LengthUnit = self.units.into();
+        let fair = self.surface(own)?;
+        let (deviations, limit) = self.deviations();
+        let mut mesh = MeshDrawing::of_fair_surface(&fair, own, &deviations, limit);
+        for (role, name) in [
+            ("station", "stations"),
+            ("waterline", "waterlines"),
+            ("buttock", "buttocks"),
+        ] {
+            let curves = self.family(role)?.into_iter().map(|(_, c)| c);
+            mesh.add_curves(name, &curves.collect::<Vec<_>>());
+        }
+        Ok(mesh)
+    }
+
+    fn model(&self) -> Result<SheetModel, ApiError> {
         Ok(SheetModel {
             title: self.title(),
             description: format!("{}; surfaces reach beyond their points", self.verdict),
@@ -55,6 +59,56 @@ impl FairingResult {
             sheets: cad::sheets(&self.surfaces)?,
             wires: vec![cad::wires("curves", &self.curves)?],
         })
+    }
+
+    fn table(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        Ok(match self.method_specific.kind {
+            FairedKind::Curve => fair_curve::correction_table(&self.curve(unit)?),
+            FairedKind::Surface => fair_surface::correction_table(&self.surface(unit)?),
+            FairedKind::Offsets => offsets::table(&self.offsets(unit)?),
+        })
+    }
+
+    fn picture(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        Ok(match self.method_specific.kind {
+            FairedKind::Curve => fair_curve::plot(&self.curve(unit)?),
+            FairedKind::Surface => fair_surface::plot(&self.surface(unit)?),
+            FairedKind::Offsets => offsets::lines_plan(&self.offsets(unit)?),
+        })
+    }
+
+    fn part_word(&self) -> &'static str {
+        "surface"
+    }
+}
+
+impl FairingResult {
+    /// Signed deviations of the given points from the shape by the places on
+    /// it, of a table outwards positive, and the largest that was allowed,
+    /// where it was the same for all. None where not all points are listed: those
+    /// that are have moved most.
+    fn deviations(&self) -> (Vec<(Point3<f64>, f64)>, Option<f64>) {
+        let specific = &self.method_specific;
+        if let Some(table) = &specific.table {
+            let mut known = Vec::new();
+            for (x, row) in table.stations.iter().zip(&table.cells) {
+                for (z, cell) in table.waterlines.iter().zip(row) {
+                    if let (Some(old), Some(new)) = (cell.old, cell.new) {
+                        known.push((Point3::new(*x, new, *z), old - new));
+                    }
+                }
+            }
+            let single = specific.options.cell_tolerances.is_empty();
+            return (known, specific.options.tolerance.filter(|_| single));
+        }
+        if specific.moves.len() < specific.points {
+            return (Vec::new(), None);
+        }
+        let moves = specific.moves.iter();
+        let first = specific.moves.first().and_then(|m| m.tolerance);
+        let same = moves.clone().all(|m| m.tolerance == first);
+        let known = moves.map(|m| (m.now.into(), m.distance)).collect();
+        (known, first.filter(|_| same))
     }
 
     fn title(&self) -> String {
@@ -76,11 +130,11 @@ impl FairingResult {
         self.method_specific.moves.iter().map(point).collect()
     }
 
-    fn curve(&self) -> Result<FairCurveDrawing, ApiError> {
+    fn curve(&self, unit: LengthUnit) -> Result<FairCurveDrawing, ApiError> {
         let curve = self.curves.first();
         let curve = curve.ok_or_else(|| ApiError::internal(&"a fair curve without a curve"))?;
         let comb = self.method_specific.comb.iter().flatten();
-        Ok(FairCurveDrawing {
+        let drawing = FairCurveDrawing {
             title: self.title(),
             units: self.units.to_string(),
             dimension: self.method_specific.dimension,
@@ -97,17 +151,18 @@ impl FairingResult {
                 .collect(),
             verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
-        })
+        };
+        Ok(in_unit(drawing, self.units.into(), unit))
     }
 
-    fn surface(&self) -> Result<FairSurfaceDrawing, ApiError> {
+    fn surface(&self, unit: LengthUnit) -> Result<FairSurfaceDrawing, ApiError> {
         let surface = self.surfaces.first();
         let surface =
             surface.ok_or_else(|| ApiError::internal(&"a fair surface without a surface"))?;
         let outline = self.method_specific.outline.clone();
         let (outer, holes) = outline.map_or_else(Default::default, |o| (o.outer, o.holes));
         let isophotes = self.method_specific.isophotes.as_ref();
-        Ok(FairSurfaceDrawing {
+        let drawing = FairSurfaceDrawing {
             title: self.title(),
             units: self.units.to_string(),
             surface: surface.tensor()?,
@@ -123,10 +178,11 @@ impl FairingResult {
             }),
             verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
-        })
+        };
+        Ok(in_unit(drawing, self.units.into(), unit))
     }
 
-    fn offsets(&self) -> Result<OffsetsDrawing, ApiError> {
+    fn offsets(&self, unit: LengthUnit) -> Result<OffsetsDrawing, ApiError> {
         let table = self.method_specific.table.as_ref();
         let table = table.ok_or_else(|| ApiError::internal(&"a faired table without a table"))?;
         let columns = table.waterlines.len();
@@ -156,7 +212,7 @@ impl FairingResult {
                 .for_each(|row: &mut Vec<Cell>| row.reverse());
             names[1].iter_mut().for_each(|n| n.reverse());
         }
-        Ok(OffsetsDrawing {
+        let drawing = OffsetsDrawing {
             title: self.title(),
             units: self.units.to_string(),
             orientation: match table.layout.rows {
@@ -172,7 +228,8 @@ impl FairingResult {
             buttock_curves: self.family("buttock")?,
             verdict: self.verdict.to_string(),
             summary: self.summary.clone(),
-        })
+        };
+        Ok(in_unit(drawing, self.units.into(), unit))
     }
 
     /// The curves of one role with the coordinate that they share, which is

@@ -2,9 +2,15 @@
 
 use super::result::{HullPlatesResult, PlateResult, RulingResult};
 use crate::formats::brep::{Path, SheetModel, Wire, WireGroup};
+use crate::formats::length_unit::LengthUnit;
+use crate::formats::measured::in_unit;
+use crate::formats::mesh_out::MeshDrawing;
+use crate::formats::patterns::PatternSheet;
 use crate::formats::plates::{HullDrawing, PlateDrawing, ProfileLine, RulingLine};
+use crate::formats::{csv, svg};
 use crate::http::dto::cad;
-use crate::http::methods::Format;
+use crate::http::methods::hull_plates::HullPlates;
+use crate::http::methods::{Document, Format, Method as _};
 use crate::http::problem::ApiError;
 
 /// The title of a drawing whose job has no label.
@@ -30,6 +36,7 @@ impl From<&PlateResult> for PlateDrawing {
         PlateDrawing {
             name: plate.name.clone(),
             rulings: plate.rulings.iter().map(Into::into).collect(),
+            rolls: plate.roll_rows(),
             within_limits: plate.within_limits,
         }
     }
@@ -48,25 +55,67 @@ impl From<&RulingResult> for RulingLine {
     }
 }
 
-impl HullPlatesResult {
-    /// The plates, sewn along their chines, with profiles and rulings, for a
-    /// CAD desk.
-    ///
-    /// # Errors
-    /// A format that is none of CAD, or a stored result that is broken; faults
-    /// of ours.
-    pub fn write_cad(&self, format: Format) -> Result<String, ApiError> {
+impl Document for HullPlatesResult {
+    fn units(&self) -> LengthUnit {
+        self.units.into()
+    }
+
+    fn formats(&self) -> Vec<Format> {
+        HullPlates.formats().to_vec()
+    }
+
+    fn mesh(&self) -> Result<MeshDrawing, ApiError> {
+        Ok(MeshDrawing::of_hull(&self.into(), self.units.into()))
+    }
+
+    /// The plates, sewn along their chines, with profiles and rulings.
+    fn model(&self) -> Result<SheetModel, ApiError> {
         let mut wires = vec![cad::wires("profiles", &self.curves)?];
         wires.extend(self.method_specific.plates.iter().map(rulings));
         let first = self.summary.first().map_or("", String::as_str);
-        let model = SheetModel {
+        Ok(SheetModel {
             title: self.title(),
             description: format!("{}: {first}", self.verdict),
             units: self.units.into(),
             sheets: cad::sheets(&self.surfaces)?,
             wires,
-        };
-        cad::write(&model, format)
+        })
+    }
+
+    fn table(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        Ok(csv::roll_table(&self.hull(unit)))
+    }
+
+    fn picture(&self, unit: LengthUnit) -> Result<String, ApiError> {
+        let sheet = in_unit(self.pattern_sheet(), self.units.into(), unit);
+        Ok(svg::lines_plan(&self.hull(unit), Some(&sheet)))
+    }
+
+    fn patterns(&self, unit: LengthUnit) -> Option<PatternSheet> {
+        Some(in_unit(self.pattern_sheet(), self.units.into(), unit))
+    }
+
+    fn part_word(&self) -> &'static str {
+        "plate"
+    }
+
+    fn part_tables(&self) -> usize {
+        self.method_specific.plates.len()
+    }
+
+    fn part_table(&self, part: usize, unit: LengthUnit) -> Result<Option<String>, ApiError> {
+        let mut hull = self.hull(unit);
+        if part >= hull.plates.len() {
+            return Ok(None);
+        }
+        hull.plates = vec![hull.plates.swap_remove(part)];
+        Ok(Some(csv::roll_table(&hull)))
+    }
+}
+
+impl HullPlatesResult {
+    fn hull(&self, unit: LengthUnit) -> HullDrawing {
+        in_unit(self.into(), self.units.into(), unit)
     }
 
     pub(super) fn title(&self) -> String {

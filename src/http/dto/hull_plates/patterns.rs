@@ -2,8 +2,8 @@
 
 use super::flat::{FlatPieceResult, FlatRulingResult, PlateFlatResult};
 use super::result::{HullPlatesResult, PlateResult};
-use crate::formats::csv::RollRow;
 use crate::formats::patterns::{Corner, Mark, Pattern, PatternSheet};
+use crate::formats::plates::RollRow;
 use crate::http::dto::job::Units;
 use crate::workshop::outline::polygon;
 use nalgebra::Point2;
@@ -53,7 +53,7 @@ impl HullPlatesResult {
                 notes: notes(piece),
                 twist_shares: self.twist_shares(plate, piece),
                 within_limits: plate.within_limits,
-                ..pattern(flat, piece)
+                ..pattern(flat, piece, self.units)
             })
             .collect()
     }
@@ -67,30 +67,28 @@ impl HullPlatesResult {
         };
         piece.rulings.iter().map(twist).collect()
     }
+}
 
-    /// The rows of each plate's roll table.
-    #[must_use]
-    pub fn roll_rows(&self) -> Vec<Vec<RollRow>> {
-        let rows = |plate: &PlateResult| {
-            let pieces = plate.flat.iter().flat_map(|flat| &flat.pieces);
-            let rows = pieces.enumerate().flat_map(|(i, piece)| {
-                let row = move |r: &FlatRulingResult| RollRow {
-                    piece: i + 1,
-                    ruling: r.ruling,
-                    flat: [r.from.into(), r.to.into()],
-                    angle_deg: r.angle_deg,
-                    bend_deg: r.bend_deg,
-                    strain_percent: r.strain_percent,
-                };
-                piece.rulings.iter().map(row)
-            });
-            rows.collect()
-        };
-        self.method_specific.plates.iter().map(rows).collect()
+impl PlateResult {
+    /// The rows of the roll table.
+    pub(super) fn roll_rows(&self) -> Vec<RollRow> {
+        let pieces = self.flat.iter().flat_map(|flat| &flat.pieces);
+        let rows = pieces.enumerate().flat_map(|(i, piece)| {
+            let row = move |r: &FlatRulingResult| RollRow {
+                piece: i + 1,
+                ruling: r.ruling,
+                flat: [r.from.into(), r.to.into()],
+                angle_deg: r.angle_deg,
+                bend_deg: r.bend_deg,
+                strain_percent: r.strain_percent,
+            };
+            piece.rulings.iter().map(row)
+        });
+        rows.collect()
     }
 }
 
-fn pattern(flat: &PlateFlatResult, piece: &FlatPieceResult) -> Pattern {
+fn pattern(flat: &PlateFlatResult, piece: &FlatPieceResult, units: Units) -> Pattern {
     let corners = piece.corners();
     let ends = |r: &FlatRulingResult| -> [Point2<f64>; 2] { [r.from.into(), r.to.into()] };
     let numbered = piece.rulings.iter().filter(|r| r.ruling % NUMBERED == 0);
@@ -112,7 +110,8 @@ fn pattern(flat: &PlateFlatResult, piece: &FlatPieceResult) -> Pattern {
         labels: numbered.map(number).collect(),
         marks: (piece.stations.iter())
             .map(|s| Mark {
-                name: format!("{} = {}", flat.station_axis.letter(), s.at),
+                // With its unit: the drawing may be in another.
+                name: format!("{} = {} {units}", flat.station_axis.letter(), s.at),
                 line: s.line.iter().map(|p| (*p).into()).collect(),
             })
             .collect(),

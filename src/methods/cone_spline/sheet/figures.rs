@@ -2,6 +2,7 @@
 
 use super::super::outcome::{Axis, BendSide, FlatSector, Kind, Patch, Trim};
 use super::flat;
+use super::grid;
 use super::{Fit, Link, Strip, surface};
 use crate::geometry::SplineError;
 use crate::geometry::cone::Frame;
@@ -57,6 +58,7 @@ pub(super) fn patch(
             .collect(),
         surface: surface::exact(&link.frame, link.strain, link.length, lambda)?,
         area: area(link.strain.g, &outline),
+        grid: grid::of(link, &outline),
         outline,
         vertices: fit.vertices,
         error_max: fit.max,

@@ -17,6 +17,7 @@
 
 mod figures;
 mod flat;
+mod grid;
 mod joins;
 mod outline;
 mod samples;
