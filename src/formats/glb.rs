@@ -37,25 +37,25 @@ const BINARY_CHUNK: u32 = 0x004E_4942;
 /// The mesh as bytes.
 #[must_use]
 pub fn write(mesh: &MeshDrawing) -> Vec<u8> {
-    let mut file = File {
+    let mut scene = Scene {
         centre: centre(mesh),
-        ..File::default()
+        ..Scene::default()
     };
     let scale = Colours::of(mesh);
     for (name, part) in mesh.part_names().iter().zip(&mesh.parts) {
         if !part.triangles.is_empty() {
-            file.add_part(mesh, (name, part), scale);
+            scene.add_part(mesh, (name, part), scale);
         }
     }
     for group in &mesh.lines {
-        file.add_lines(group);
+        scene.add_lines(group);
     }
-    file.finish(mesh)
+    scene.finish(mesh)
 }
 
-/// A file under construction.
+/// A scene under construction.
 #[derive(Default)]
-struct File {
+struct Scene {
     binary: Vec<u8>,
     views: Vec<String>,
     accessors: Vec<String>,
@@ -64,7 +64,7 @@ struct File {
     centre: Point3<f64>,
 }
 
-impl File {
+impl Scene {
     fn add_part(&mut self, mesh: &MeshDrawing, (name, part): (&str, &MeshPart), scale: Colours) {
         let places = part.corners.iter().map(|v| mesh.vertices[*v]);
         let mut attributes = format!("\"POSITION\":{}", self.positions(places));
