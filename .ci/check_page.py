@@ -51,6 +51,8 @@ def check(page, base, folder):
         page.mouse.move(box["x"] + box["width"] * share, box["y"] + box["height"] * 0.5)
         found = found or "twist" in page.locator("#under").inner_text()
     assert found, "no value under the pointer"
+    expect(page.locator("#limit")).to_contain_text("limit 6°")
+    files(page)
 
     page.set_viewport_size({"width": 360, "height": 740})
     page.wait_for_timeout(200)
@@ -62,6 +64,41 @@ def check(page, base, folder):
     assert not page.locator("#canvas").is_visible(), "the print shows the canvas"
     page.emulate_media(media="screen", color_scheme="dark")
     page.screenshot(path=folder / "dark.png", full_page=True)
+
+
+def files(page):
+    """The list of files, by unit and by part."""
+    link = page.locator("#downloads a", has_text="result.obj")
+    page.locator("#units").select_option("mm")
+    assert link.get_attribute("href").endswith("result.obj?units=mm"), link.get_attribute("href")
+    page.locator("#units").select_option("")
+    assert link.get_attribute("href").endswith("result.obj"), link.get_attribute("href")
+    page.locator("#parts summary").click()
+    expect(page.locator("#pieces a", has_text="plate-1.glb")).to_be_visible()
+
+
+def others(page, base, folder):
+    """The other methods: coloured by their own quantity, with or without a limit."""
+    for example, quantity, limit in (
+        ("bent_plate", "distance", True), ("bilge_grid", "deviation", True),
+        ("vault", "normal deviation", False), ("half_circle", None, False),
+    ):
+        page.goto(base + "/")
+        page.locator("#example").select_option(example)
+        page.get_by_role("button", name="Submit the example").click()
+        row = page.locator("#rows tr").first
+        expect(row).to_contain_text("successful", timeout=120_000)
+        row.get_by_role("link").click()
+        expect(page.locator("#downloads li").first).to_be_visible()
+        page.wait_for_function("document.getElementById('picture').naturalWidth > 0")
+        if quantity is None:
+            expect(page.locator("#space")).to_be_hidden()
+            assert page.locator("#downloads a", has_text="glb").count() == 0
+            continue
+        expect(page.locator("#quantity")).to_have_text(f"{quantity} 0")
+        assert page.locator("#limit").inner_text().startswith("limit") == limit, example
+        page.wait_for_function(f"({COLOURS})() > 50")
+        page.screenshot(path=folder / f"{example}.png", full_page=True)
 
 
 def main():
@@ -76,6 +113,9 @@ def main():
         page.on("request", lambda r: asked.add(urlsplit(r.url).netloc))
         try:
             check(page, base, folder)
+            page.emulate_media(media="screen", color_scheme="light")
+            page.set_viewport_size({"width": 1280, "height": 900})
+            others(page, base, folder)
         finally:
             print("\n".join(said), file=sys.stderr)
             browser.close()

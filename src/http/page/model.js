@@ -1,112 +1,92 @@
-// Reading what the service writes: meshes (OBJ) and rulings (CSV).
+// Reading what the service writes: scenes (binary glTF).
 
 /**
  * @typedef {object} Model
  * @property {Float32Array} positions three a vertex, about `centre`
- * @property {Float32Array} values one a vertex: |twist| in degrees, or -1
+ * @property {Float32Array} values one a vertex: the magnitude of its number, or -1
+ * @property {Float32Array} signed one a vertex: the number itself, or NaN
  * @property {Uint32Array} indices three a triangle
- * @property {Float32Array} lines six a ruling, about `centre`
+ * @property {Float32Array} lines six a piece of line, about `centre`
  * @property {number[]} centre middle of the box
  * @property {number} radius half its diagonal
  * @property {{name: string, first: number}[]} objects with their first triangle
+ * @property {Meaning} meaning what the numbers are
  */
 
 /**
- * A mesh, vertices apart for each object so that either side of a chine keeps
- * its own twist.
- * @param {string} text Wavefront OBJ
- * @param {Ruling[]} rulings
- * @returns {Model}
+ * @typedef {object} Meaning
+ * @property {string | null} quantity
+ * @property {string | null} unit
+ * @property {number | null} limit
+ * @property {number} largest
+ * @property {string} units of the positions
  */
-export function readModel(text, rulings) {
-  const places = [], corners = [], indices = [], objects = [];
-  let own = new Map();
-  const owners = [];
-  const corner = (field) => {
-    const place = parseInt(field, 10) - 1;
-    let index = own.get(place);
-    if (index === undefined) {
-      index = corners.push(place) - 1;
-      own.set(place, index);
-      owners.push(Math.max(0, objects.length - 1));
+
+const MAGIC = 0x46546c67, LINES = 1, UNSIGNED = 5125;
+
+/**
+ * A scene as the service writes it: one level of nodes, positions about the
+ * centre that the root's extras give, in the unit that they name.
+ * @param {ArrayBuffer} buffer @returns {Model}
+ */
+export function readModel(buffer) {
+  const head = new DataView(buffer);
+  if (head.getUint32(0, true) !== MAGIC) throw new Error("the scene is no binary glTF");
+  const length = head.getUint32(12, true);
+  const tree = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 20, length)));
+  const read = reader(buffer, tree, 28 + length);
+  const meaning = tree.nodes[0].extras;
+  const positions = [], signed = [], indices = [], lines = [], objects = [];
+  let vertices = 0, triangles = 0;
+  for (const node of tree.nodes.slice(1)) {
+    const part = tree.meshes[node.mesh].primitives[0];
+    const places = read(part.attributes.POSITION), order = read(part.indices);
+    if (part.mode === LINES) {
+      lines.push(Float32Array.from({ length: 3 * order.length }, (_, i) => places[3 * order[(i / 3) | 0] + (i % 3)]));
+      continue;
     }
-    return index;
-  };
-  for (const line of text.split("\n")) {
-    if (line.startsWith("v ")) {
-      const [, x, y, z] = line.split(" ");
-      places.push([+x, +y, +z]);
-    } else if (line.startsWith("f ")) {
-      const [, a, b, c] = line.split(" ");
-      indices.push(corner(a), corner(b), corner(c));
-    } else if (line.startsWith("o ")) {
-      objects.push({ name: line.slice(2).trim().replaceAll("_", " "), first: indices.length / 3 });
-      own = new Map();
-    }
+    const count = places.length / 3;
+    objects.push({ name: node.name, first: triangles });
+    positions.push(places);
+    signed.push(part.attributes._VALUE === undefined ? new Float32Array(count).fill(NaN) : read(part.attributes._VALUE));
+    indices.push(order.map((i) => i + vertices));
+    vertices += count;
+    triangles += order.length / 3;
   }
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (const p of places) for (let k = 0; k < 3; k++) {
-    low[k] = Math.min(low[k], p[k]);
-    high[k] = Math.max(high[k], p[k]);
-  }
-  const centre = low.map((l, k) => (l + high[k]) / 2);
-  const about = (p) => p.map((x, k) => x - centre[k]);
+  const numbers = joined(Float32Array, signed);
+  const model = { positions: joined(Float32Array, positions), lines: joined(Float32Array, lines) };
   return {
-    positions: new Float32Array(corners.flatMap((place) => about(places[place]))),
-    values: twists(corners.map((place) => places[place]), owners, rulings),
-    indices: new Uint32Array(indices),
-    lines: new Float32Array(rulings.flatMap((r) => [...about(r.from), ...about(r.to)])),
-    centre,
-    radius: Math.hypot(...high.map((h, k) => h - low[k])) / 2 || 1,
+    ...model,
+    signed: numbers,
+    values: numbers.map((v) => (Number.isNaN(v) ? -1 : Math.abs(v))),
+    indices: joined(Uint32Array, indices),
+    centre: meaning.centre,
+    radius: reach(model.positions) || 1,
     objects,
+    meaning,
   };
 }
 
-/**
- * The twist at each vertex: that of the ruling of its plate which ends
- * nearest. The mesh's objects are the plates in order.
- */
-function twists(points, owners, rulings) {
-  const plates = [];
-  for (const r of rulings) (plates[r.plate] ??= []).push(r);
-  return Float32Array.from(points, (p, i) => {
-    let best = Infinity, value = -1;
-    for (const r of plates[owners[i]] ?? []) {
-      const away = Math.min(distance(p, r.from), distance(p, r.to));
-      if (away < best) { best = away; value = Math.abs(r.twist); }
-    }
-    return value;
-  });
+/** Accessors as arrays over the binary chunk, which begins at `start`. */
+const reader = (buffer, tree, start) => (index) => {
+  const { bufferView, componentType, count, type } = tree.accessors[index];
+  const kind = componentType === UNSIGNED ? Uint32Array : Float32Array;
+  return new kind(buffer, start + tree.bufferViews[bufferView].byteOffset, count * (type === "VEC3" ? 3 : 1));
+};
+
+function joined(kind, arrays) {
+  const all = new kind(arrays.reduce((sum, a) => sum + a.length, 0));
+  let at = 0;
+  for (const array of arrays) { all.set(array, at); at += array.length; }
+  return all;
 }
 
-const distance = (p, q) => (p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 + (p[2] - q[2]) ** 2;
-
-/**
- * @typedef {object} Ruling
- * @property {number} plate from 0, in the order of the table
- * @property {number[]} from
- * @property {number[]} to
- * @property {number} twist degrees, signed
- */
-
-/**
- * The rulings of a ruling table; none out of another table.
- * @param {string} text RFC 4180
- * @returns {Ruling[]}
- */
-export function readRulings(text) {
-  const [head, ...records] = text.split("\r\n").filter(Boolean).map(fields);
-  const column = (name) => head?.findIndex((h) => h === name || h.startsWith(`${name} (`)) ?? -1;
-  const place = (end) => ["x", "y", "z"].map((axis) => column(`${end}_${axis}`));
-  const from = place("from"), to = place("to"), twist = column("twist"), number = column("ruling");
-  if ([...from, ...to, twist, number].includes(-1)) return [];
-  // Plates may share a name; their rulings count from 1 each.
-  let plate = -1;
-  return records.map((r) => ({ plate: (plate += Number(r[number] === "1")), from: from.map((k) => +r[k]), to: to.map((k) => +r[k]), twist: +r[twist] }));
-}
-
-/** The fields of a record. @param {string} record */
-function fields(record) {
-  return [...record.matchAll(/("(?:[^"]|"")*"|[^,]*)(?:,|$)/g)]
-    .map(([, field]) => (field.startsWith('"') ? field.slice(1, -1).replaceAll('""', '"') : field));
+/** Half the diagonal of the box. @param {Float32Array} positions */
+function reach(positions) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < positions.length; i++) {
+    low[i % 3] = Math.min(low[i % 3], positions[i]);
+    high[i % 3] = Math.max(high[i % 3], positions[i]);
+  }
+  return positions.length ? Math.hypot(...high.map((h, k) => h - low[k])) / 2 : 0;
 }

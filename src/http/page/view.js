@@ -1,6 +1,6 @@
 // One job: how it goes, its words, its surface and drawing, its files.
 import { ask, at, element, ended, standing, verdictWords } from "./service.js";
-import { readModel, readRulings } from "./model.js";
+import { readModel } from "./model.js";
 import { Viewer, paintScale } from "./viewer.js";
 
 const id = location.pathname.split("/")[2];
@@ -40,20 +40,43 @@ function showTrouble(error) {
     element("li", [e.pointer, e.message, e.hint].filter(Boolean).join(" – "))));
 }
 
-/** A file's text, or none where this result has no such form. */
-async function text(form) {
-  const answer = await fetch(`${path}/result.${form}`);
-  return answer.ok ? answer.text() : "";
+/** A link to a file, with a place for its size. */
+function fileItem(file) {
+  const item = element("li"), link = element("a", file.name);
+  link.href = file.href;
+  link.title = file.description;
+  item.append(link, element("span"));
+  if (file.parameters.includes("version")) {
+    const old = element("a", "R12");
+    old.href = `${file.href}?version=r12`;
+    old.title = `${file.description}, for old controllers`;
+    item.append(" ", old);
+  }
+  if (file.part !== null) item.append(element("span", ` ${file.part}`, "quiet"));
+  return item;
 }
 
-/** All forms as links at once. */
-function showFiles(forms) {
-  at("downloads").replaceChildren(...forms.map((form) => {
-    const item = element("li"), link = element("a", `result.${form}`);
-    link.href = `${path}/result.${form}`;
-    item.append(link, element("span"));
-    return item;
-  }));
+/** All forms as links at once, those of single parts when they are asked for. */
+function showFiles(files) {
+  const units = () => {
+    for (const link of at("files").querySelectorAll("li a")) {
+      const file = files.find((f) => link.pathname === f.href);
+      if (!file?.parameters.includes("units")) continue;
+      const address = new URL(link.href);
+      if (at("units").value) address.searchParams.set("units", at("units").value);
+      else address.searchParams.delete("units");
+      link.href = address.href;
+    }
+  };
+  const parts = files.filter((f) => f.part !== null);
+  at("downloads").replaceChildren(...files.filter((f) => f.part === null).map(fileItem));
+  at("parts").hidden = parts.length === 0;
+  at("parts").firstElementChild.textContent = `Files of single parts (${parts.length})`;
+  at("parts").ontoggle = () => {
+    if (at("pieces").children.length === 0) at("pieces").replaceChildren(...parts.map(fileItem));
+    units();
+  };
+  at("units").onchange = units;
   at("files").hidden = false;
 }
 
@@ -62,43 +85,47 @@ async function showSizes() {
   for (const item of [...at("downloads").children]) {
     const answer = await fetch(item.firstChild.href, { method: "HEAD" });
     const kilobytes = Number(answer.headers.get("Content-Length")) / 1000;
-    if (answer.ok) item.lastChild.textContent = ` ${kilobytes.toFixed(kilobytes < 10 ? 1 : 0)} kB`;
-    else if (answer.status === 404) item.remove();
+    if (answer.ok) item.children[1].textContent = ` ${kilobytes.toFixed(kilobytes < 10 ? 1 : 0)} kB`;
   }
 }
 
-async function showSpace(limit) {
-  const [mesh, table] = await Promise.all([text("obj"), text("csv")]);
-  if (!mesh) return;
-  const model = readModel(mesh, readRulings(table));
+/** Three digits, with the unit. */
+const measure = (value, unit) => `${Number(value.toPrecision(3))}${unit === "deg" ? "°" : ` ${unit}`}`;
+
+async function showSpace(href) {
+  const answer = await fetch(href);
+  if (!answer.ok) return;
+  const model = readModel(await answer.arrayBuffer());
+  const { quantity, unit, limit, largest, units } = model.meaning;
+  const name = (quantity ?? "").replaceAll("_", " ");
   at("space").hidden = false;
-  const viewer = new Viewer(at("canvas"), model, limit || 1);
-  const coloured = model.lines.length > 0 && limit > 0;
+  // Without a limit the colours end at the largest, which is not above itself.
+  const viewer = new Viewer(at("canvas"), model, limit || largest * (1 + 1e-5) || 1);
   at("rulings").hidden = model.lines.length === 0;
-  at("legend").hidden = !coloured;
-  at("limit").textContent = `above the limit of ${limit}° (twist)`;
-  paintScale(at("scale"));
+  at("legend").hidden = !quantity;
+  at("quantity").textContent = `${name} 0`;
+  at("limit").textContent = limit ? `limit ${measure(limit, unit)}, largest ${measure(largest, unit)}` : `largest ${measure(largest, unit ?? "")}`;
+  paintScale(at("scale"), Boolean(limit));
   at("lines").onchange = () => { viewer.showsLines = at("lines").checked; viewer.draw(); };
   at("home").onclick = () => viewer.home();
   const help = at("under").textContent;
   viewer.onPoint = (hit) => {
     at("under").textContent = hit
-      ? `${hit.name} at ${hit.place.map((x) => x.toPrecision(5)).join(", ")}${hit.value >= 0 && coloured ? `: twist ${hit.value.toFixed(2)}°` : ""}`
+      ? `${hit.name} at ${hit.place.map((x) => x.toPrecision(5)).join(", ")} ${units}${Number.isNaN(hit.value) ? "" : `: ${name} ${measure(hit.value, unit)}`}`
       : help;
   };
 }
 
 async function showResult(job) {
-  const [result, methods] = await Promise.all([ask(`${path}/result`), ask(`/v1/methods/${job.method}`)]);
+  const [result, list] = await Promise.all([ask(`${path}/result`), ask(job.links.artifacts)]);
   at("summary").replaceChildren(...result.summary.map((s) => element("li", s)));
-  const forms = methods.formats;
-  showFiles(forms);
+  showFiles(list.items);
+  const whole = (form) => list.items.find((f) => f.name === `result.${form}`)?.href;
   at("pictures").hidden = false;
-  at("drawing").hidden = !forms.includes("svg");
+  at("drawing").hidden = !whole("svg");
   at("picture").onerror = () => { at("drawing").hidden = true; };
-  if (forms.includes("svg")) at("picture").src = at("sheet").href = `${path}/result.svg`;
-  // A curve has no mesh though its method has the form.
-  if (forms.includes("obj") && result.surfaces.length > 0) await showSpace(result.method_specific.options?.max_twist_deg ?? 0);
+  if (whole("svg")) at("picture").src = at("sheet").href = whole("svg");
+  if (whole("glb")) await showSpace(whole("glb"));
   await showSizes();
 }
 

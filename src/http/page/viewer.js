@@ -1,9 +1,9 @@
 // The surface in three dimensions: WebGL 2, one draw call for the triangles and
-// one for the rulings, drawn only when something changed.
+// one for the lines, drawn only when something changed.
 
 /** @typedef {import("./model.js").Model} Model */
 
-/** Colours of no twist, the limit, above it, and of what has no value. */
+/** Colours of nothing, the limit, above it, and of what has no value. */
 const RAMP = [[0.50, 0.86, 0.71], [0.08, 0.14, 0.52]], ABOVE = [0.82, 0.01, 0.11], PLAIN = [0.55, 0.66, 0.78];
 const vec3 = (c) => `vec3(${c.map((x) => x.toFixed(3)).join(",")})`;
 
@@ -54,15 +54,16 @@ function attribute(gl, place, data, size) {
   gl.vertexAttribPointer(place, size, gl.FLOAT, false, 0, 0);
 }
 
-/** Paints the scale from no twist to the limit. @param {HTMLCanvasElement} canvas */
-export function paintScale(canvas) {
+/** Paints the scale from nothing to the limit and above, or to the largest. @param {HTMLCanvasElement} canvas @param {boolean} limited */
+export function paintScale(canvas, limited) {
   const pen = canvas.getContext("2d");
   const css = (c) => `rgb(${c.map((x) => Math.round(255 * x)).join(" ")})`;
-  const end = canvas.width * 0.8;
+  const end = canvas.width * (limited ? 0.8 : 1);
   const ramp = pen.createLinearGradient(0, 0, end, 0);
   RAMP.forEach((c, i) => ramp.addColorStop(i, css(c)));
   pen.fillStyle = ramp;
   pen.fillRect(0, 0, end, canvas.height);
+  if (!limited) return;
   pen.fillStyle = css(ABOVE);
   pen.fillRect(end, 0, canvas.width - end, canvas.height);
   pen.fillStyle = "#fff";
@@ -80,7 +81,7 @@ export class Viewer {
   /** Called with what is under the pointer, or null. */
   onPoint = (_hit) => {};
 
-  /** @param {HTMLCanvasElement} canvas @param {Model} model @param {number} limit degrees */
+  /** @param {HTMLCanvasElement} canvas @param {Model} model @param {number} limit in the unit of its values */
   constructor(canvas, model, limit) {
     const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
     if (!gl) throw new Error("this browser offers no WebGL 2");
@@ -216,6 +217,6 @@ export class Viewer {
   #tell({ t, corners, shares }) {
     const mix = (of) => corners.reduce((sum, i, k) => sum + shares[k] * of(i), 0);
     const place = [0, 1, 2].map((k) => this.#model.centre[k] + mix((i) => this.#model.positions[3 * i + k]));
-    return { name: this.#model.objects.findLast((o) => o.first <= t / 3)?.name ?? "", place, value: mix((i) => this.#model.values[i]) };
+    return { name: this.#model.objects.findLast((o) => o.first <= t / 3)?.name ?? "", place, value: mix((i) => this.#model.signed[i]) };
   }
 }
