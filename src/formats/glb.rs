@@ -371,8 +371,8 @@ mod tests {
             (0..3).map(|k| column(k) * f64::from(local[k])).sum::<f64>() + column(3)
         };
         let expected = [2.0 + 1e5, 0.5 + 3e5, -(1.0 + 2e5)].map(|x| x * 0.3048);
-        for row in 0..3 {
-            assert!((at(row) - expected[row]).abs() < 1e-7, "{row}");
+        for (row, expected) in expected.iter().enumerate() {
+            assert!((at(row) - expected).abs() < 1e-7, "{row}");
         }
     }
 

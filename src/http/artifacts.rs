@@ -56,7 +56,8 @@ impl Artifact {
             description: format.purpose().to_owned(),
             part,
             parameters: (parameters.into_iter())
-                .filter_map(|(name, takes)| takes.then(|| name.to_owned()))
+                .filter(|(_, takes)| *takes)
+                .map(|(name, _)| name.to_owned())
                 .collect(),
             href,
         }

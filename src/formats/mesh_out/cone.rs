@@ -120,3 +120,80 @@ fn triangles(numbers: &[usize], across: usize, vertices: &[Point3<f64>]) -> Vec<
     triangles.retain(|[a, b, c]| a != b && b != c && c != a);
     triangles
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::cones::{ConeSheet, EndRuling};
+
+    /// A plane patch between two rulings, `rows` of three places each; the
+    /// last row of a `pointed` one is a point.
+    fn sheet(name: &str, [from, to]: [f64; 2], rows: u32, pointed: bool) -> ConeSheet {
+        let place = |i: u32, k: u32| {
+            let share = f64::from(i) / f64::from(rows - 1);
+            let width = if pointed { 1.0 - share } else { 1.0 };
+            let x = from + (to - from) * share;
+            Point3::new(x, 1.0 - width * f64::from(k) / 2.0, 0.0)
+        };
+        let places = || (0..rows).flat_map(|i| (0..3).map(move |k| (i, k)));
+        ConeSheet {
+            name: name.into(),
+            kind: "plane",
+            apex: None,
+            axis: None,
+            half_angle_deg: None,
+            radius: None,
+            slant_range: [0.0, 1.0],
+            end_radii: None,
+            turn_deg: 0.0,
+            min_bend_radius: None,
+            bend_strain_percent: None,
+            bend_side: None,
+            sides: [0, 2].map(|k| vec![place(0, k), place(rows - 1, k)]),
+            grid: ConeGrid {
+                across: 3,
+                points: places().map(|(i, k)| place(i, k)).collect(),
+                distances: places().map(|(i, k)| f64::from(i) - f64::from(k)).collect(),
+            },
+            area: 1.0,
+            errors: [0.0; 2],
+        }
+    }
+
+    #[test]
+    fn patches_share_their_ruling_and_shrink_to_a_corner() {
+        let strip = ConeSplineDrawing {
+            title: "t".into(),
+            units: "m".into(),
+            verdict: "within_limits".into(),
+            sheets: vec![
+                sheet("1", [0.0, 2.0], 4, false),
+                sheet("2", [2.0, 4.0], 3, true),
+            ],
+            rulings: [0.0, 2.0]
+                .map(|x| EndRuling {
+                    id: 0,
+                    ends: [Point3::new(x, 1.0, 0.0), Point3::new(x, 0.0, 0.0)],
+                    flat: [nalgebra::Point2::origin(); 2],
+                })
+                .to_vec(),
+        };
+        let mesh = MeshDrawing::of_cones(&strip, LengthUnit::Metre, Some(0.1));
+        // 4 rows of 3; one more row of 3, and the corner.
+        assert_eq!(mesh.vertices.len(), 12 + 3 + 1);
+        let mut area = 0.0;
+        for part in &mesh.parts {
+            assert_eq!(part.values.len(), part.corners.len());
+            for triangle in &part.triangles {
+                let [a, b, c] = triangle.map(|i| mesh.vertices[part.corners[i]]);
+                let up = (b - a).cross(&(c - a)).z;
+                assert!(up > 0.0);
+                area += up / 2.0;
+            }
+        }
+        assert!((area - 3.0).abs() < 1e-12, "{area}");
+        assert_eq!(mesh.quantity.unwrap().limit, Some(0.1));
+        let names: Vec<_> = mesh.lines.iter().map(|g| g.name.as_str()).collect();
+        assert_eq!(names, ["rulings", "sides of 1", "sides of 2"]);
+    }
+}

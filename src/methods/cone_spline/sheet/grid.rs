@@ -36,7 +36,7 @@ fn rows(outline: &[Point2<f64>]) -> Vec<f64> {
     let corners = || outline.iter().map(|p| p.x);
     let first = corners().fold(f64::INFINITY, f64::min);
     let last = corners().fold(f64::NEG_INFINITY, f64::max);
-    if !(first < last) {
+    if first >= last {
         return Vec::new();
     }
     let even = (1..ROWS).map(|i| first + (last - first) * (i as f64 / ROWS as f64));
