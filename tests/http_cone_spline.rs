@@ -197,6 +197,21 @@ async fn every_file_can_be_had() {
     assert!(file("igs").await.contains("S      1"));
     let dxf = file("dxf").await;
     assert!(dxf.contains("ROLL") && dxf.contains("CUT"));
+    let old = file("dxf?version=r12&units=mm").await;
+    assert!(old.contains("AC1009") && !old.contains("LWPOLYLINE"));
+    assert!(old.contains("lengths in mm"), "the text by the pattern");
+    let scene = service.get(&format!("{place}/result.glb")).await;
+    assert!(scene.body.starts_with(b"glTF"));
+    let table = service.get(&format!("{place}/artifacts/patch-2.csv")).await;
+    assert_eq!(String::from_utf8_lossy(&table.body).lines().count(), 2);
+    for patch in list(&result["method_specific"]["patches"]) {
+        let grid = &patch["grid"];
+        let distances = list(&grid["distances"]);
+        assert_eq!(distances.len(), list(&grid["points"]).len());
+        let far = distances.iter().map(|d| d.as_f64().unwrap().abs());
+        let most = result["diagnostics"]["to_surface"]["max"].as_f64().unwrap();
+        assert!(far.fold(0.0, f64::max) <= most * (1.0 + 1e-9));
+    }
     let again = service.get(&format!("{place}/result.json")).await;
     assert_eq!(again.json(), result);
     let none = service.get(&format!("{place}/result.dwg")).await;

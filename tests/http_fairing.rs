@@ -183,6 +183,9 @@ async fn every_file_of_every_kind_is_written() {
         } else {
             // A curve has no surface to mesh.
             mesh.problem(404, "format-not-available");
+            let list = service.get(&format!("{place}/artifacts")).await.json();
+            let items = list["items"].as_array().unwrap();
+            assert!(items.iter().all(|i| i["media_type"] != "model/gltf-binary"));
         }
     }
 }

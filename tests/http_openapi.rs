@@ -282,7 +282,7 @@ async fn results_keep_to_their_schemas(document: &Value, service: &Service) {
         let place = service.done(&job(first)).await;
         check(document, "get", "/v1/jobs/{id}", &service.get(&place).await);
         let end = if first == "deck" {
-            vec!["result", "result.json", "input"]
+            vec!["result", "result.json", "input", "artifacts"]
         } else {
             vec![]
         };

@@ -56,8 +56,11 @@ impl MeshDrawing {
             let triangles = triangles(&numbers, grid.across, &drawing.vertices);
             drawing.add_part(&sheet.name, &triangles, |v| values.get(&v).copied());
         }
-        let rulings = strip.rulings.iter().map(|r| r.ends.to_vec());
-        drawing.add_lines("rulings", None, rulings);
+        // The first and the last run past the strip where its ends are cut
+        // askew.
+        let inner = 1..strip.rulings.len().saturating_sub(1).max(1);
+        let rulings = strip.rulings.get(inner).unwrap_or_default();
+        drawing.add_lines("rulings", None, rulings.iter().map(|r| r.ends.to_vec()));
         for (index, sheet) in strip.sheets.iter().enumerate() {
             let name = format!("sides of {}", sheet.name);
             drawing.add_lines(&name, Some(index), sheet.sides.clone());
@@ -170,7 +173,7 @@ mod tests {
                 sheet("1", [0.0, 2.0], 4, false),
                 sheet("2", [2.0, 4.0], 3, true),
             ],
-            rulings: [0.0, 2.0]
+            rulings: [0.0, 2.0, 4.0]
                 .map(|x| EndRuling {
                     id: 0,
                     ends: [Point3::new(x, 1.0, 0.0), Point3::new(x, 0.0, 0.0)],
@@ -195,5 +198,6 @@ mod tests {
         assert_eq!(mesh.quantity.unwrap().limit, Some(0.1));
         let names: Vec<_> = mesh.lines.iter().map(|g| g.name.as_str()).collect();
         assert_eq!(names, ["rulings", "sides of 1", "sides of 2"]);
+        assert_eq!(mesh.lines[0].lines.len(), 1, "where the two meet");
     }
 }
