@@ -373,6 +373,8 @@ async fn plates_come_with_flat_patterns_and_roll_tables() {
     );
     let svg = file("svg").await;
     assert!(svg.contains("flat patterns, 1 : 100<") && svg.contains("Body (y–z)"));
+}
+
 #[tokio::test]
 async fn units_scale_the_file_and_what_it_says_of_them() {
     let service = service().await;

@@ -5,7 +5,7 @@ use crate::formats::brep::{Wire, WireGroup};
 use crate::formats::mesh_out::tests::two_squares;
 use crate::formats::mesh_out::{Quantity, QuantityKind};
 use crate::formats::offsets::{Cell, Orientation};
-use crate::formats::patterns::Pattern;
+use crate::formats::patterns::{Corner, Mark, Pattern};
 use crate::formats::plates::{PlateDrawing, ProfileLine, RulingLine};
 
 const MM: LengthUnit = LengthUnit::Millimetre;
@@ -115,9 +115,17 @@ fn tables_patterns_and_models_name_their_new_unit() {
             name: "p".into(),
             kind: "k".into(),
             outline: vec![Point2::new(1.0, 0.0)],
-            line: Vec::new(),
             rulings: vec![[Point2::origin(), Point2::new(0.0, 1.0)]],
             labels: vec![(Point2::new(2.0, 0.0), "A".into())],
+            cut: vec![Corner {
+                at: Point2::new(0.0, 3.0),
+                bulge: 0.5,
+            }],
+            marks: vec![Mark {
+                name: "x = 1 ft".into(),
+                line: vec![Point2::new(4.0, 0.0)],
+            }],
+            ..Pattern::default()
         }],
         none: "",
         verdict: "within_limits".into(),
@@ -128,6 +136,9 @@ fn tables_patterns_and_models_name_their_new_unit() {
     assert_eq!(sheet.patterns[0].outline[0].x, 304.8);
     assert_eq!(sheet.patterns[0].rulings[0][1].y, 304.8);
     assert_eq!(sheet.patterns[0].labels[0].0.x, 609.6);
+    let corner = sheet.patterns[0].cut[0];
+    assert!((corner.at.y - 914.4).abs() < 1e-9 && corner.bulge == 0.5);
+    assert_eq!(sheet.patterns[0].marks[0].line[0].x, 1219.2);
 
     let model = SheetModel {
         title: "t".into(),
