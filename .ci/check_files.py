@@ -8,6 +8,8 @@ import pathlib
 import sys
 import xml.etree.ElementTree as ET
 
+import ezdxf
+import ezdxf.path
 import numpy as np
 import trimesh
 
@@ -42,6 +44,19 @@ expect(not list(svg.iter("{http://www.w3.org/2000/svg}script")), "the drawing ha
 rows = (folder / "trawler.csv").read_bytes().split(b"\r\n")
 rulings = sum(len(plate["rulings"]) for plate in plates)
 expect(len(rows) == rulings + 2, f"{len(rows) - 2} rows for {rulings} rulings")
+
+drawing = ezdxf.readfile(folder / "trawler.dxf")
+expect(not drawing.audit().errors, "the drawing for the cutting table has errors")
+cut = [e for e in drawing.modelspace() if e.dxf.layer == "CUT"]
+expect(len(cut) == len(plates) and all(e.closed for e in cut), "not one closed outline a plate")
+layers = {e.dxf.layer for e in drawing.modelspace()}
+expect(layers == {"CUT", "ROLL", "FRAME", "TEXT"}, f"the layers are {sorted(layers)}")
+for plate, outline in zip(plates, cut):
+    corners = np.array([list(p)[:2] for p in ezdxf.path.make_path(outline).flattening(1e-4)])
+    x, y = corners.T
+    area = abs(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
+    flat = plate["flat"]["flat_area"]
+    expect(abs(area / flat - 1) < 1e-4, f"{plate['name']}: {area} cut, {flat} told")
 
 print("\n".join(faults) or f"read back: {len(mesh.faces)} triangles, {rulings} rulings")
 sys.exit(bool(faults))

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! layers (id, log, problem documents, compression, panics, time, size)
-//!   └ routes: jobs results artifacts methods examples health docs metrics page
+//!   └ routes: jobs results artifacts verify methods examples health docs metrics page
 //!       ├ extract, intake: from a request to a value, strictly
 //!       │    strict_json → schema_check → dto → methods::…::Request
 //!       └ respond, problem, failures: from a value or an error to an answer

@@ -41,6 +41,7 @@ impl HullPlatesResult {
             let profile = profile.map_or("a profile", |c| c.name.as_str());
             let mut notes = vec![verdict(plate, sentence)];
             notes.extend(remarks(flat, piece, self.units, profile));
+            notes.extend(extension(plate, self.units));
             notes
         };
         let count = flat.pieces.len();
@@ -164,6 +165,14 @@ fn remarks(
         ));
     }
     remarks
+}
+
+/// What is to be trimmed.
+fn extension(plate: &PlateResult, units: Units) -> Option<String> {
+    let longest = plate.extensions.into_iter().fold(0.0, f64::max);
+    (longest > 0.0).then(|| {
+        format!("Runs on past the profiles' ends by up to {longest:.4} {units}, to be trimmed.")
+    })
 }
 
 /// What the summary says of the flat patterns; nothing where there is none.
