@@ -154,11 +154,11 @@ pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Optio
 /// Stations as chains of parameters.
 fn marks(development: &Development<'_>, hull: &HullFrame) -> Vec<(f64, Vec<Vector2<f64>>)> {
     let fields = development.fields(STATION_STEPS);
-    let surface = development.surface();
+    let net = stations::Net::new(development.surface(), &fields, hull.axis());
     let stations = hull.stations().iter();
     stations
         .flat_map(|at| {
-            let chains = stations::crossing(surface, &fields, (hull.axis(), *at));
+            let chains = net.crossing(*at);
             chains.into_iter().map(|chain| (*at, chain))
         })
         .collect()

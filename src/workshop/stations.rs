@@ -8,103 +8,143 @@ use std::collections::BTreeMap;
 const ACROSS: usize = 8;
 /// A bound on the list of stations, whatever the numbers.
 const MOST_STATIONS: u32 = 200;
-/// Steps of the bisection: to the last digit.
-const BISECTIONS: usize = 52;
+/// Steps to a place at the most; a handful is enough where u runs evenly.
+const STEPS: usize = 40;
 
 /// A place on the plate: its parameters.
 type Place = Vector2<f64>;
 /// An edge of the net: along `u` from node (j, k), or along `v` (`true`).
 type NetEdge = (usize, usize, bool);
 
-/// The chains of places (u, v) at which coordinate `axis` of the surface is
-/// `at`, each from border to border of the plate: contours of a net (Lorensen &
-/// Cline's squares) whose places are then found on the surface itself.
-pub(super) fn crossing(
-    surface: &RuledSurface,
-    fields: &[f64],
-    (axis, at): (usize, f64),
-) -> Vec<Vec<Place>> {
-    let net = Net {
-        surface,
-        fields,
-        axis,
-        at,
-    };
-    let signs: Vec<[bool; ACROSS + 1]> = (fields.iter()).map(|u| net.signs(*u)).collect();
-    let mut links: BTreeMap<NetEdge, Vec<NetEdge>> = BTreeMap::new();
-    for (j, pair) in signs.windows(2).enumerate() {
-        for k in 0..ACROSS {
-            let corners = [pair[0][k], pair[1][k], pair[1][k + 1], pair[0][k + 1]];
-            let sides = [
-                (j, k, false),
-                (j + 1, k, true),
-                (j, k + 1, false),
-                (j, k, true),
-            ];
-            let mut cut: Vec<NetEdge> = (0..4)
-                .filter(|i| corners[*i] != corners[(i + 1) % 4])
-                .map(|i| sides[i])
-                .collect();
-            if cut.len() == 4 && corners[0] != net.is_above_middle(j, k) {
-                // Two lines: those that cut off the corners which differ from
-                // the middle.
-                cut.rotate_left(1);
-            }
-            for two in cut.chunks_exact(2) {
-                links.entry(two[0]).or_default().push(two[1]);
-                links.entry(two[1]).or_default().push(two[0]);
-            }
-        }
-    }
-    (chains(links).iter())
-        .map(|chain| chain.iter().map(|e| net.place(e)).collect())
-        .collect()
-}
-
-struct Net<'a> {
+/// A plate to be crossed by stations.
+pub(super) struct Net<'a> {
     surface: &'a RuledSurface,
     fields: &'a [f64],
     axis: usize,
+    /// The coordinate at both ends of the ruling at each of `fields`.
+    ends: Vec<[f64; 2]>,
+}
+
+/// One station.
+struct Station<'a> {
+    net: &'a Net<'a>,
     at: f64,
 }
 
-impl Net<'_> {
-    /// How far (u, v) lies before or behind the station.
-    fn ahead(&self, u: f64, v: f64) -> f64 {
-        let a = self.surface.first().point(u)[self.axis] - self.at;
-        let b = self.surface.second().point(u)[self.axis] - self.at;
-        a + (b - a) * v
+impl<'a> Net<'a> {
+    /// A net of rulings at `fields`, for stations of coordinate `axis`.
+    pub fn new(surface: &'a RuledSurface, fields: &'a [f64], axis: usize) -> Self {
+        let mut net = Net {
+            surface,
+            fields,
+            axis,
+            ends: Vec::new(),
+        };
+        net.ends = fields.iter().map(|u| net.ends_at(*u)).collect();
+        net
     }
 
-    fn signs(&self, u: f64) -> [bool; ACROSS + 1] {
-        let (a, b) = (self.ahead(u, 0.0), self.ahead(u, 1.0));
-        std::array::from_fn(|k| a + (b - a) * (k as f64 / ACROSS as f64) >= 0.0)
+    fn ends_at(&self, u: f64) -> [f64; 2] {
+        [self.surface.first(), self.surface.second()].map(|c| c.point(u)[self.axis])
+    }
+
+    /// The chains of places (u, v) at which the coordinate is `at`, each from
+    /// border to border of the plate: contours of the net (marching squares)
+    /// whose places are then found on the surface itself.
+    pub fn crossing(&self, at: f64) -> Vec<Vec<Place>> {
+        let station = Station { net: self, at };
+        let links = station.links();
+        (chains(links).iter())
+            .map(|chain| chain.iter().map(|e| station.place(e)).collect())
+            .collect()
+    }
+}
+
+impl Station<'_> {
+    /// Which edges of the net are joined by the station across a field.
+    fn links(&self) -> BTreeMap<NetEdge, Vec<NetEdge>> {
+        let signs: Vec<_> = (0..self.net.fields.len()).map(|j| self.signs(j)).collect();
+        let mut links: BTreeMap<NetEdge, Vec<NetEdge>> = BTreeMap::new();
+        for (j, pair) in signs.windows(2).enumerate() {
+            for k in 0..ACROSS {
+                let corners = [pair[0][k], pair[1][k], pair[1][k + 1], pair[0][k + 1]];
+                let sides = [
+                    (j, k, false),
+                    (j + 1, k, true),
+                    (j, k + 1, false),
+                    (j, k, true),
+                ];
+                let mut cut: Vec<NetEdge> = (0..4)
+                    .filter(|i| corners[*i] != corners[(i + 1) % 4])
+                    .map(|i| sides[i])
+                    .collect();
+                if cut.len() == 4 && corners[0] != self.is_above_middle(j, k) {
+                    // Two lines: those that cut off the corners which differ from
+                    // the middle.
+                    cut.rotate_left(1);
+                }
+                for two in cut.chunks_exact(2) {
+                    links.entry(two[0]).or_default().push(two[1]);
+                    links.entry(two[1]).or_default().push(two[0]);
+                }
+            }
+        }
+        links
+    }
+
+    /// How far (u, v) lies before or behind the station.
+    fn ahead(&self, [a, b]: [f64; 2], v: f64) -> f64 {
+        (a - self.at) + (b - a) * v
+    }
+
+    fn signs(&self, j: usize) -> [bool; ACROSS + 1] {
+        let ends = self.net.ends[j];
+        std::array::from_fn(|k| self.ahead(ends, k as f64 / ACROSS as f64) >= 0.0)
     }
 
     fn is_above_middle(&self, j: usize, k: usize) -> bool {
-        let u = 0.5 * (self.fields[j] + self.fields[j + 1]);
-        self.ahead(u, (k as f64 + 0.5) / ACROSS as f64) >= 0.0
+        let u = 0.5 * (self.net.fields[j] + self.net.fields[j + 1]);
+        let v = (k as f64 + 0.5) / ACROSS as f64;
+        self.ahead(self.net.ends_at(u), v) >= 0.0
     }
 
-    /// Where the station crosses an edge of the net.
+    /// Where the station crosses an edge of the net: on a ruling by proportion,
+    /// along u by the false position of Illinois (Dowell & Jarratt 1971).
     fn place(&self, &(j, k, along_ruling): &NetEdge) -> Place {
         let v = k as f64 / ACROSS as f64;
         if along_ruling {
-            let u = self.fields[j];
-            let (a, b) = (self.ahead(u, 0.0), self.ahead(u, 1.0));
-            return Place::new(u, (a / (a - b)).clamp(0.0, 1.0));
+            let [a, b] = self.net.ends[j].map(|x| x - self.at);
+            return Place::new(self.net.fields[j], (a / (a - b)).clamp(0.0, 1.0));
         }
-        let [mut low, mut high] = [self.fields[j], self.fields[j + 1]];
-        let before = self.ahead(low, v) >= 0.0;
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if (self.ahead(middle, v) >= 0.0) == before {
-                low = middle;
-            } else {
-                high = middle;
+        let mut low = (self.net.fields[j], self.ahead(self.net.ends[j], v));
+        let mut high = (self.net.fields[j + 1], self.ahead(self.net.ends[j + 1], v));
+        let mut nearest = if low.1.abs() < high.1.abs() {
+            low
+        } else {
+            high
+        };
+        // Which end the last step moved: one that stays twice counts half.
+        let mut moved_high = None;
+        for _ in 0..STEPS {
+            let next = high.0 - high.1 * (high.0 - low.0) / (high.1 - low.1);
+            if nearest.1 == 0.0 || !(next > low.0 && next < high.0) {
+                break;
             }
+            nearest = (next, self.ahead(self.net.ends_at(next), v));
+            let moves_high = (nearest.1 >= 0.0) == (high.1 >= 0.0);
+            let again = moved_high == Some(moves_high);
+            let (moved, stays) = if moves_high {
+                (&mut high, &mut low)
+            } else {
+                (&mut low, &mut high)
+            };
+            *moved = nearest;
+            if again {
+                stays.1 *= 0.5;
+            }
+            moved_high = Some(moves_high);
         }
-        Place::new(high, v)
+        Place::new(nearest.0, v)
     }
 }
 

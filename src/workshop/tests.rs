@@ -368,11 +368,12 @@ fn station_marks_lie_on_their_stations() {
     let hull = HullFrame::around(std::slice::from_ref(&plate)).unwrap();
     let development = development::Development::new(&plate).unwrap();
     let fields = development.fields(256);
+    let net = stations::Net::new(&plate, &fields, 0);
     assert!(hull.stations().len() > 8);
     // At the ends they touch a corner at the most.
     let inner = hull.stations().iter().filter(|x| **x > 0.0 && **x < 10.0);
     for at in inner {
-        let chains = stations::crossing(&plate, &fields, (0, *at));
+        let chains = net.crossing(*at);
         assert_eq!(chains.len(), 1, "{at}");
         for place in &chains[0] {
             close(plate.point(place.x, place.y).x, *at, 1e-9);
