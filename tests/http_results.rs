@@ -376,6 +376,33 @@ async fn plates_come_with_flat_patterns_and_roll_tables() {
 }
 
 #[tokio::test]
+async fn a_thick_plate_is_laid_out_by_its_middle() {
+    let service = real_service().await;
+    let mut trawler = service.get("/v1/examples/trawler").await.json();
+    let number = |value: &Value| value.as_f64().unwrap();
+    let mut lengths = Vec::new();
+    for side in ["inside", "middle", "outside"] {
+        trawler["options"]["thickness"] = json!(0.1);
+        trawler["options"]["surface_side"] = json!(side);
+        let place = service.done(&trawler).await;
+        let result = service.get(&format!("{place}/result.json")).await.json();
+        let flat = &result["method_specific"]["plates"][0]["flat"];
+        assert_eq!(flat["developed"], "middle");
+        lengths.push(number(&flat["boundary_lengths"][0]));
+        let dxf = service.get(&format!("{place}/result.dxf")).await;
+        let dxf = String::from_utf8_lossy(&dxf.body).into_owned();
+        assert!(dxf.contains("its thickness is allowed for"));
+    }
+    // The topside bulges outwards: what lies further out is longer, by half the
+    // thickness times the bend.
+    assert!(
+        lengths[0] > lengths[1] && lengths[1] > lengths[2],
+        "{lengths:?}"
+    );
+    assert!((lengths[0] + lengths[2] - 2.0 * lengths[1]).abs() < 1e-4);
+}
+
+#[tokio::test]
 async fn units_scale_the_file_and_what_it_says_of_them() {
     let service = service().await;
     let place = service.done(&job("deck")).await;

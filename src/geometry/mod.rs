@@ -20,8 +20,8 @@ pub use arc_length::ArcLength;
 pub use bounding_box::BoundingBox;
 pub use bspline::{
     Axis, BSplineCurve, BSplineSurface, BasisJet, CurveJet, Knots, MAX_DEGREE, Parametrization,
-    SplineError, SurfaceJet, basis_jet, complete_cubic, gram, interpolate, interpolate_grid,
-    interpolation_parameters, join_c0,
+    SplineError, SurfaceJet, basis_jet, complete_cubic, gram, interpolate, interpolate_at,
+    interpolate_grid, interpolation_parameters, join_c0,
 };
 pub use circular_arc::CircularArc;
 pub use closest::{Closest, CurveIndex};

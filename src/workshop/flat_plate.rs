@@ -2,6 +2,7 @@
 
 use super::development::{Development, FlatLine, breaks, size};
 use super::hull_frame::{HullFrame, Side};
+use super::neutral_surface;
 use super::outline::{self, Edge, OutlineCorner, least_rectangle, polygon};
 use super::overlap;
 use super::refold::{self, Bend};
@@ -149,6 +150,39 @@ pub fn flatten(plate: &RuledSurface, rulings: &[f64], hull: &HullFrame) -> Optio
         pieces,
         figures,
     })
+}
+
+/// Which face of a plate a surface is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Face {
+    /// The one that lies up in the pattern: the inside, where the plate has one.
+    Up,
+    /// Neither: it is the middle.
+    Middle,
+    /// The other.
+    Down,
+}
+
+/// Flattens a plate of a thickness by its middle, which bending neither
+/// stretches nor shortens; the surface is one of its faces. `None` where
+/// [`flatten`] has none, and for a surface with creases, at which the middle
+/// gapes.
+#[must_use]
+pub fn flatten_thick(
+    plate: &RuledSurface,
+    rulings: &[f64],
+    hull: &HullFrame,
+    thickness: f64,
+    face: Face,
+) -> Option<FlatPlate> {
+    let (_, from_normal) = hull.side(plate, &breaks(plate));
+    let up = if from_normal { 0.5 } else { -0.5 };
+    let shift = match face {
+        Face::Up => -up * thickness,
+        Face::Middle => 0.0,
+        Face::Down => up * thickness,
+    };
+    flatten(&neutral_surface::offset(plate, shift)?, rulings, hull)
 }
 
 /// Stations as chains of parameters.

@@ -5,6 +5,7 @@
 //!   rulings keep their lengths (`development`), in pieces where it would lie on
 //!   itself (`overlap`), outlined by lines and arcs ([`outline`]), with station
 //!   marks (`stations`).
+//! * A plate with thickness is laid out by its middle (`neutral_surface`).
 //! * A plate that twists cannot be laid out without strain: it is measured, as
 //!   lengths and areas (`strain`) and by rolling the pattern up again (`refold`).
 //! * [`HullFrame`] tells which way is along the hull and which side is inside.
@@ -12,6 +13,7 @@
 mod development;
 mod flat_plate;
 mod hull_frame;
+mod neutral_surface;
 pub mod outline;
 mod overlap;
 mod refold;
@@ -20,6 +22,8 @@ mod strain;
 #[cfg(test)]
 mod tests;
 
-pub use flat_plate::{FlatFigures, FlatPiece, FlatPlate, FlatRuling, StationMark, flatten};
+pub use flat_plate::{
+    Face, FlatFigures, FlatPiece, FlatPlate, FlatRuling, StationMark, flatten, flatten_thick,
+};
 pub use hull_frame::{HullFrame, Side};
 pub use outline::OutlineCorner;

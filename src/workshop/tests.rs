@@ -431,3 +431,71 @@ fn the_polygon_of_an_outline_has_its_area() {
         .collect();
     close(area(&corners) / area(&piece.outline), 1.0, 1e-3);
 }
+
+/// A quarter of a cylinder of radius 1 about z, seen from its axis (the hull's
+/// middle line is elsewhere: a frame around a plate alone has it inside).
+#[test]
+fn a_thick_cylinder_is_as_long_as_its_middle() {
+    let arc = quarter_circle(1.0);
+    let plate = ruled(arc.clone(), arc.translated(&Vector3::new(0.0, 0.0, 3.0)));
+    let hull = HullFrame::around(std::slice::from_ref(&plate)).unwrap();
+    let thickness = 0.1;
+    let thick = |face: Face| flatten_thick(&plate, &even(), &hull, thickness, face).unwrap();
+    let thin = flat(&plate);
+    let lengths = [Face::Up, Face::Middle, Face::Down].map(|face| {
+        let flat = thick(face);
+        no_strain(&flat.figures);
+        assert!((flat.figures.boundary_lengths[0] - flat.figures.boundary_lengths[1]).abs() < 1e-9);
+        flat.figures.boundary_lengths[0]
+    });
+    close(lengths[1], thin.figures.boundary_lengths[0], 1e-9);
+    // The face that is up is nearer to the middle line or further from it: the
+    // middle of the plate is half a thickness towards the other.
+    let step = 0.5 * thickness * FRAC_PI_2;
+    close((lengths[0] - lengths[1]).abs(), step, 1e-9);
+    close(lengths[0] + lengths[2], 2.0 * lengths[1], 1e-9);
+}
+
+#[test]
+fn a_thick_cone_keeps_its_angle_and_a_crease_has_no_middle() {
+    // Radius z tan(30°) from z = 1 to 3: the offset is a cone of the same angle.
+    let circle = |z: f64| {
+        through(
+            |u| {
+                let (sin, cos) = (FRAC_PI_2 * u).sin_cos();
+                let radius = z * (PI / 6.0).tan();
+                point![radius * cos, radius * sin, z]
+            },
+            60,
+        )
+    };
+    let plate = ruled(circle(1.0), circle(3.0));
+    let hull = HullFrame::around(std::slice::from_ref(&plate)).unwrap();
+    let flat = flatten_thick(&plate, &even(), &hull, 0.02, Face::Up).unwrap();
+    let (thin, thick) = (self::flat(&plate), flat);
+    let opening = |flat: &FlatPlate| {
+        let [a, b] = flat.figures.boundary_lengths;
+        (b - a).abs() / thin_length(flat)
+    };
+    // Both boundaries move by the same angle at the same length of ruling.
+    close(opening(&thin), opening(&thick), 1e-7);
+    let change = thick.figures.boundary_lengths[0] - thin.figures.boundary_lengths[0];
+    close(change.abs(), 0.01 * (PI / 6.0).cos() * FRAC_PI_2, 1e-6);
+    // Two planes that meet along a ruling.
+    let bent = |y: f64| {
+        let points = vec![
+            point![0.0, y, 0.0],
+            point![1.0, y, 0.0],
+            point![1.0, y, 1.0],
+        ];
+        BSplineCurve::new(1, vec![0.0, 0.0, 0.5, 1.0, 1.0], points, None).unwrap()
+    };
+    let plate = ruled(bent(0.0), bent(2.0));
+    let hull = HullFrame::around(std::slice::from_ref(&plate)).unwrap();
+    assert!(flatten_thick(&plate, &even(), &hull, 0.1, Face::Up).is_none());
+}
+
+/// The length of a ruling.
+fn thin_length(flat: &FlatPlate) -> f64 {
+    piece(flat).rulings[0].length
+}

@@ -136,7 +136,7 @@ impl PlatesJob {
         control: &dyn Control,
     ) -> Result<Fitted, FitError> {
         let outcome = fit(&self.request, control)?;
-        let flats = flat_patterns(&outcome, control)?;
+        let flats = flat_patterns(&outcome, &self.job.options, control)?;
         let result = HullPlatesResult::new(&self.job, input_sha256, &outcome, flats);
         Fitted::of(&result)
     }

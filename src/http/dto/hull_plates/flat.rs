@@ -1,12 +1,13 @@
 //! The flat patterns of `hull_plates` on the wire.
 
 use super::super::flat::FlatPoint;
+use super::HullPlatesOptions;
 use crate::geometry::RuledSurface;
 use crate::methods::hull_plates::outcome::{Outcome, Plate};
 use crate::methods::{Control, FitError};
 use crate::workshop::{
     FlatFigures, FlatPiece, FlatPlate, FlatRuling, HullFrame, OutlineCorner, Side, StationMark,
-    flatten,
+    flatten, flatten_thick,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -15,12 +16,14 @@ use utoipa::ToSchema;
 /// A plate as it is cut and rolled: the pattern of the surface that is
 /// delivered, true to size. Boundaries and rulings keep their lengths; where the
 /// plate twists, what lies between them is strained, and the figures say by how
-/// much. The surface counts as the inside of the plate: no thickness is allowed
-/// for.
+/// much. With a thickness it is the pattern of the plate's middle, which bending
+/// neither stretches nor shortens.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct PlateFlatResult {
     /// Which side of the plate lies up.
     pub side: SideWord,
+    /// Which surface the pattern is of.
+    pub developed: DevelopedWord,
     /// The coordinate of the stations, along the hull.
     pub station_axis: AxisWord,
     /// One piece, or several where the pattern would lie on itself; it is then
@@ -53,6 +56,21 @@ pub enum SideWord {
     Inside,
     /// With the first profile below.
     FirstBelow,
+}
+
+/// `given`: the surface that is delivered, no thickness being given. `middle`:
+/// half the thickness from it, or where `surface_side` has it. `creased`: the
+/// surface that is delivered, though a thickness is given: at its creases the
+/// middle gapes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DevelopedWord {
+    /// The surface as delivered.
+    Given,
+    /// The middle of the plate.
+    Middle,
+    /// The surface as delivered, because of its creases.
+    Creased,
 }
 
 /// A coordinate.
@@ -156,6 +174,7 @@ pub struct RefoldResult {
 /// [`FitError::Stopped`] when `control` says so.
 pub fn flat_patterns(
     outcome: &Outcome,
+    options: &HullPlatesOptions,
     control: &dyn Control,
 ) -> Result<Vec<Option<PlateFlatResult>>, FitError> {
     let ruled = |plate: &Plate| {
@@ -171,20 +190,30 @@ pub fn flat_patterns(
         .map(|(surface, plate)| {
             control.check()?;
             let rulings: Vec<f64> = plate.rulings.iter().map(|r| r.u).collect();
-            let flat = flatten(surface, &rulings, &hull);
-            Ok(flat.map(|flat| PlateFlatResult::new(&flat, axis)))
+            let face = options.surface_side.into();
+            let thick = options
+                .thickness
+                .and_then(|t| flatten_thick(surface, &rulings, &hull, t, face));
+            let developed = match (&thick, options.thickness) {
+                (Some(_), _) => DevelopedWord::Middle,
+                (None, Some(_)) => DevelopedWord::Creased,
+                (None, None) => DevelopedWord::Given,
+            };
+            let flat = thick.or_else(|| flatten(surface, &rulings, &hull));
+            Ok(flat.map(|flat| PlateFlatResult::new(&flat, developed, axis)))
         })
         .collect()
 }
 
 impl PlateFlatResult {
-    fn new(flat: &FlatPlate, station_axis: AxisWord) -> Self {
+    fn new(flat: &FlatPlate, developed: DevelopedWord, station_axis: AxisWord) -> Self {
         let f = &flat.figures;
         PlateFlatResult {
             side: match flat.side {
                 Side::Inside => SideWord::Inside,
                 Side::FirstBelow => SideWord::FirstBelow,
             },
+            developed,
             station_axis,
             pieces: flat.pieces.iter().map(Into::into).collect(),
             surface_area: f.surface_area,

@@ -10,12 +10,13 @@ mod result;
 mod to_request;
 
 pub use diagnostics::{HullPlatesDiagnostics, PlateFigures};
-pub use flat::{FlatStrainResult, PlateFlatResult, RefoldResult, flat_patterns};
+pub use flat::{DevelopedWord, FlatStrainResult, PlateFlatResult, RefoldResult, flat_patterns};
 pub use result::HullPlatesResult;
 pub use to_request::to_request;
 
 use super::curves::{Point, Spline, whole_number};
 use crate::methods::hull_plates::request::{Ends, Options, Solver};
+use crate::workshop::Face;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -57,10 +58,13 @@ pub struct HullPlatesOptions {
     /// surface normals at the two ends of a ruling. Steel stands about 6.
     #[schema(exclusive_minimum = 0, maximum = 45)]
     pub max_twist_deg: f64,
-    /// Plate thickness, for the strain of bending; a length.
+    /// Plate thickness, for the strain of bending and the flat pattern; a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(exclusive_minimum = 0)]
     pub thickness: Option<f64>,
+    /// Where in the thickness the surface through the profiles lies. The pattern
+    /// is that of the middle.
+    pub surface_side: SurfaceSide,
     /// The least bend radius that the yard can roll; a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(exclusive_minimum = 0)]
@@ -86,6 +90,30 @@ pub struct HullPlatesOptions {
     pub min_clearance_percent: Option<f64>,
     /// Which algorithm fits.
     pub solver: SolverOption,
+}
+
+/// Where in a plate the surface through the profiles lies: on its `inside`
+/// (moulded lines), in its `middle`, on its `outside`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SurfaceSide {
+    /// The side that lies up in the pattern.
+    #[default]
+    Inside,
+    /// Half-way.
+    Middle,
+    /// The other side.
+    Outside,
+}
+
+impl From<SurfaceSide> for Face {
+    fn from(side: SurfaceSide) -> Self {
+        match side {
+            SurfaceSide::Inside => Face::Up,
+            SurfaceSide::Middle => Face::Middle,
+            SurfaceSide::Outside => Face::Down,
+        }
+    }
 }
 
 /// How far the plates' boundaries may leave the profiles.
@@ -171,6 +199,7 @@ impl Default for HullPlatesOptions {
             },
             max_twist_deg,
             thickness,
+            surface_side: SurfaceSide::Inside,
             min_bend_radius,
             pinned_rulings: Vec::new(),
             ends: match ends {

@@ -1,6 +1,6 @@
 //! From stored flat patterns to the cutting table, the roll table and words.
 
-use super::flat::{FlatPieceResult, FlatRulingResult, PlateFlatResult};
+use super::flat::{DevelopedWord, FlatPieceResult, FlatRulingResult, PlateFlatResult};
 use super::result::{HullPlatesResult, PlateResult};
 use crate::formats::patterns::{Corner, Mark, Pattern, PatternSheet};
 use crate::formats::plates::RollRow;
@@ -139,6 +139,16 @@ fn remarks(
     profile: &str,
 ) -> Vec<String> {
     let [length, width] = piece.sheet;
+    let developed = match flat.developed {
+        DevelopedWord::Given => {
+            "the surface through the profiles; no thickness is given, so none is allowed for."
+        }
+        DevelopedWord::Middle => "the middle of the plate: its thickness is allowed for.",
+        DevelopedWord::Creased => {
+            "the surface through the profiles: the plate has creases, at which its thickness is \
+             not allowed for."
+        }
+    };
     let count = flat.pieces.len();
     let mut remarks = vec![
         format!(
@@ -147,9 +157,8 @@ fn remarks(
             piece.area
         ),
         format!(
-            "Pattern of the surface through the profiles, taken as the inside of the plate; \
-             thickness is not allowed for. Bends {:.2} degrees in all.",
-            flat.bend_deg
+            "Pattern of {} Bends {:.2} degrees in all.",
+            developed, flat.bend_deg
         ),
         format!(
             "Flattening strains the plate by at most {:.4} % (twist, in the middle of a ruling), \
