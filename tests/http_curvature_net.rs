@@ -198,7 +198,10 @@ async fn without_cyclides_there_is_the_smooth_surface() {
     assert_eq!(surfaces[0]["degree"], json!([3, 3]));
     assert_eq!(result["diagnostics"]["cyclides"], Value::Null);
     let obj = service.get(&format!("{place}/result.obj")).await;
-    assert!(String::from_utf8_lossy(&obj.body).contains("o smooth_surface"));
+    assert!(String::from_utf8_lossy(&obj.body).contains("\no patch_0,0\n"));
+    let scene = service.get(&format!("{place}/result.glb")).await;
+    let told = String::from_utf8_lossy(&scene.body).into_owned();
+    assert!(told.contains("\"quantity\":\"torsion\",\"unit\":\"deg\""));
     let svg = service.get(&format!("{place}/result.svg")).await;
     assert!(String::from_utf8_lossy(&svg.body).contains("no flat patterns"));
 }
