@@ -17,8 +17,10 @@ const STATIONS: usize = 96;
 /// Rulings that are handed on.
 const RULINGS: usize = 41;
 /// Length of a ruling, squared, against the shortest from its station: decides
-/// where the surface is flat. A twist of 4° weighs as much as twice the length.
-const LENGTH_WEIGHT: f64 = 2e-3;
+/// where the surface is flat. Little, since rulings may run far from square
+/// across a strip, as those of a tangent developable do; a twist of 1° weighs
+/// as much as twice the length.
+const LENGTH_WEIGHT: f64 = 1e-4;
 /// What the mesh's normals say, against what the sides say. Of several ruled
 /// surfaces between two sides it picks that of the mesh; more would let bumps
 /// of the mesh turn the rulings.
