@@ -55,6 +55,16 @@ impl Chain {
         frames
     }
 
+    /// λ on a joint's ruling as the patch before it counts, less that as the
+    /// patch after it does.
+    pub(super) fn offset(&self, joint: usize) -> f64 {
+        if joint >= self.middle {
+            self.slides[joint]
+        } else {
+            -self.slides[joint]
+        }
+    }
+
     /// Number of patches.
     pub(super) fn len(&self) -> usize {
         self.strains.len()
@@ -132,6 +142,29 @@ impl Chain {
         second.arc[0] = half;
         second.shared[0] = 0.0;
         parts.insert(patch + 1, second);
+        Chain::link(&parts)
+    }
+
+    /// A patch and the next as one that turns and bends by as much as both.
+    pub(super) fn merged(&self, patch: usize) -> Chain {
+        let mut parts = self.parts();
+        let second = parts.remove(patch + 1);
+        let first = &mut parts[patch];
+        let length = |p: &Part| p.arc[1] - p.arc[0];
+        let (a, b) = (length(first), length(&second));
+        // λ on the second of the first's base line.
+        let offset = second.shared[0] - first.shared[1];
+        let whole = a + b * second.strain.speed(offset);
+        *first = Part {
+            frame: first.frame.carried(first.strain, first.arc[0]),
+            strain: Strain {
+                g: (first.strain.g * a + second.strain.g * b) / whole,
+                k: (first.strain.k * a + second.strain.k * b) / whole,
+            },
+            arc: [0.0, whole],
+            base: 0.0,
+            shared: [first.shared[0], second.shared[1] - offset],
+        };
         Chain::link(&parts)
     }
 
@@ -274,6 +307,18 @@ pub(super) mod tests {
     }
 
     #[test]
+    fn offsets_lead_from_one_base_line_to_the_next() {
+        let c = chain();
+        let frames = c.frames();
+        for joint in 0..3 {
+            let end = frames[joint].carried(c.strains[joint], c.reach[joint][1]);
+            let start = frames[joint + 1].carried(c.strains[joint + 1], c.reach[joint + 1][0]);
+            let apart = end.at(0.3) - start.at(0.3 - c.offset(joint));
+            assert!(apart.norm() < 1e-14, "{joint}");
+        }
+    }
+
+    #[test]
     fn parts_link_to_the_same_chain_whatever_the_base_lines() {
         let c = chain();
         let same = Chain::link(&c.parts());
@@ -292,6 +337,14 @@ pub(super) mod tests {
             let mut lines = rulings(&cut);
             lines.drain(2 * patch + 1..2 * patch + 3);
             assert!(agree(&rulings(&chain()), &lines), "patch {patch}");
+        }
+    }
+
+    #[test]
+    fn two_halves_merge_to_the_patch_that_was_cut() {
+        for patch in 0..4 {
+            let merged = chain().split(patch).merged(patch);
+            assert!(agree(&rulings(&chain()), &rulings(&merged)), "{patch}");
         }
     }
 }

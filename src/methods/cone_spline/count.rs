@@ -1,16 +1,19 @@
 //! How many patches: as few as a tolerance asks for, or as many as the noise
 //! lets one tell apart.
 
-use super::engine::{Effort, Fitted};
+use super::engine::Fitted;
 use super::ladder::Ladder;
-use super::minimax::minimax;
+use super::minimax::{self, minimax};
 use super::problem::Freedom;
 use super::request::Norm;
 use super::segments::Aim;
 use crate::solver::Stop;
+use rayon::prelude::*;
 
 /// Patches whose joints need not meet come so much nearer than a chain.
 const SLACK: f64 = 1.3;
+/// With this factor above the tolerance more starts may keep it.
+const CLOSE: f64 = 1.5;
 /// A patch more that gains less than this share is not worth it …
 const GAIN: f64 = 0.03;
 /// … so many times in a row.
@@ -47,14 +50,29 @@ pub(super) fn best(
         return Ok(rung.fitted);
     }
     let freedom = ladder.freedom(patches);
-    let mut best = lowered(ladder, &rung.fitted, &freedom, enough)?;
-    if let Some(other) = rung.other.filter(|_| best.max() > enough) {
-        let lowered = lowered(ladder, &other, &freedom, enough)?;
-        if lowered.max() < best.max() && lowered.worth(ladder.sample).is_finite() {
-            best = lowered;
-        }
+    let all: Vec<&Fitted> = std::iter::once(&rung.fitted)
+        .chain(&rung.others)
+        .filter(|f| f.worth(ladder.sample).is_finite())
+        .collect();
+    let shape = (ladder.sample, &freedom);
+    let lower = |f: &&Fitted| minimax(f, shape, (enough, minimax::FEW), ladder.control);
+    let short = all
+        .par_iter()
+        .map(lower)
+        .collect::<Result<Vec<_>, Stop>>()?;
+    let height = |f: &Fitted| height(ladder, f);
+    let best = short
+        .into_iter()
+        .min_by(|a, b| height(a).total_cmp(&height(b)));
+    match best {
+        Some(best) => lowered(ladder, &best, &freedom, enough),
+        None => Ok(rung.fitted),
     }
-    Ok(best)
+}
+
+/// The largest distance of a chain that can be rolled.
+fn height(ladder: &Ladder, fitted: &Fitted) -> f64 {
+    fitted.max().max(fitted.worth(ladder.sample))
 }
 
 /// A fit with its largest distance lowered as far as it goes or to `enough`.
@@ -68,7 +86,18 @@ pub(super) fn lowered(
     enough: f64,
 ) -> Result<Fitted, Stop> {
     let shape = (ladder.sample, freedom);
-    minimax(fitted, shape, Effort::STEP, enough, ladder.control)
+    minimax(fitted, shape, (enough, minimax::ROUNDS), ladder.control)
+}
+
+/// The same, with more starts where the tolerance is near.
+fn within(ladder: &mut Ladder, patches: usize, norm: Norm, tolerance: f64) -> Result<Fitted, Stop> {
+    let found = best(ladder, patches, norm, tolerance)?;
+    let over = height(ladder, &found) / tolerance;
+    if !(1.0..CLOSE).contains(&over) && over.is_finite() {
+        return Ok(found);
+    }
+    ladder.improve(patches)?;
+    best(ladder, patches, norm, tolerance)
 }
 
 /// As few patches as keep every point within a tolerance, from where the
@@ -85,11 +114,10 @@ pub(super) fn for_tolerance(
     let near = SLACK * tolerance.max(floor);
     let enough = |k: &usize| ladder.segments.value(Aim::Max, *k) <= near;
     let mut count = (1..=ladder.most()).find(enough).unwrap_or(ladder.most());
-    let mut found = best(ladder, count, norm, tolerance)?;
-    let height = |f: &Fitted, l: &Ladder| f.max().max(f.worth(l.sample));
+    let mut found = within(ladder, count, norm, tolerance)?;
     let mut waited = 0;
     let mut least = found.clone();
-    while height(&found, ladder) > tolerance {
+    while height(ladder, &found) > tolerance {
         if count == ladder.most() || (waited >= PATIENCE && floor > tolerance) {
             return Ok(Choice {
                 fitted: least,
@@ -97,17 +125,27 @@ pub(super) fn for_tolerance(
             });
         }
         count += 1;
-        found = best(ladder, count, norm, tolerance)?;
-        if height(&found, ladder) < (1.0 - GAIN) * height(&least, ladder) {
+        found = within(ladder, count, norm, tolerance)?;
+        if height(ladder, &found) < (1.0 - GAIN) * height(ladder, &least) {
             waited = 0;
             least = found.clone();
         } else {
             waited += 1;
         }
     }
+    // Of an exact spline the right number may be found and those next to it not.
+    let all: Vec<usize> = (1..=count).collect();
+    ladder.solve(&all)?;
+    for k in 1..count {
+        let fitted = ladder.rung(k)?.fitted;
+        if height(ladder, &fitted) <= tolerance {
+            (found, count) = (fitted, k);
+            break;
+        }
+    }
     while count > 1 {
-        let fewer = best(ladder, count - 1, norm, tolerance)?;
-        if height(&fewer, ladder) > tolerance {
+        let fewer = within(ladder, count - 1, norm, tolerance)?;
+        if height(ladder, &fewer) > tolerance {
             break;
         }
         (found, count) = (fewer, count - 1);

@@ -2,8 +2,8 @@
 //! vertices and all patches, whatever the fit looked at.
 //!
 //! From a vertex: to the foot on the patch where distance and the way by which
-//! the foot lies outside the patch's rulings are least together; the first and
-//! the last patch go on past their ends. From a patch: from places all over its
+//! the foot lies outside the patch's rulings are least together; an end that
+//! went on without limit would catch vertices of other turns. From a patch: from places all over its
 //! trimmed part to the nearest point of the triangles.
 
 use super::chain::{Chain, Placed};
@@ -31,7 +31,6 @@ pub(super) fn homes(chain: &Chain, points: &[Point3<f64>]) -> Vec<Home> {
 }
 
 fn home(placed: &Placed, point: &Point3<f64>) -> Home {
-    let last = placed.frames.len() - 1;
     let mut best = (
         f64::INFINITY,
         Home {
@@ -39,9 +38,9 @@ fn home(placed: &Placed, point: &Point3<f64>) -> Home {
             distance: 0.0,
         },
     );
-    for patch in 0..=last {
+    for patch in 0..placed.frames.len() {
         let foot = placed.foot_on(point, patch);
-        let apart = foot.distance.hypot(outside(placed, patch, last, &foot));
+        let apart = foot.distance.hypot(outside(placed, patch, &foot));
         if apart < best.0 {
             let distance = foot.distance;
             best = (apart, Home { patch, distance });
@@ -51,16 +50,14 @@ fn home(placed: &Placed, point: &Point3<f64>) -> Home {
 }
 
 /// How far beyond a patch's rulings a foot lies, along its own arc.
-fn outside(placed: &Placed, patch: usize, last: usize, foot: &Foot) -> f64 {
+fn outside(placed: &Placed, patch: usize, foot: &Foot) -> f64 {
     let [low, high] = placed.reach[patch];
-    let before = if patch == 0 { 0.0 } else { low - foot.arc };
-    let after = if patch == last { 0.0 } else { foot.arc - high };
     let speed = placed.strains[patch].speed(foot.lambda);
     // Beyond the apex there is no patch.
     if speed <= 0.0 {
         return f64::INFINITY;
     }
-    before.max(after).max(0.0) * speed
+    (low - foot.arc).max(foot.arc - high).max(0.0) * speed
 }
 
 /// What every patch's vertices come to.

@@ -14,6 +14,8 @@ use rayon::prelude::*;
 pub(super) struct Sample {
     pub(super) points: Vec<Point3<f64>>,
     pub(super) weights: Vec<f64>,
+    /// What all weights together stand for.
+    pub(super) area: f64,
 }
 
 /// A chain with the place of every point of a sample on it.
@@ -28,6 +30,12 @@ pub(super) struct Fitted {
     pub(super) lambda: Vec<[f64; 2]>,
     /// Signed distance of each point.
     pub(super) distances: Vec<f64>,
+    /// Least and largest λ that must lie before a patch's apex: of its points
+    /// and of its neighbours' points next to the joints, whose rulings are its
+    /// own too.
+    before_apex: Vec<[f64; 2]>,
+    /// Area that the points of each patch take up on it.
+    covered: Vec<f64>,
     /// Iterations so far.
     pub(super) iterations: usize,
     /// Why the last minimisation ended.
@@ -43,6 +51,10 @@ pub(super) struct Effort {
     pub(super) reduction: f64,
     /// Weight of the squared differences of neighbouring strains.
     pub(super) smoothing: f64,
+    /// What lies within this distance hardly counts.
+    pub(super) allowed: f64,
+    /// Least 1 + gλ, where it is to be more than a roll asks for.
+    pub(super) slowest: Option<f64>,
 }
 
 impl Effort {
@@ -51,12 +63,8 @@ impl Effort {
         iterations: 60,
         reduction: 1e-7,
         smoothing: 0.0,
-    };
-    /// Between two changes of the weights.
-    pub(super) const STEP: Effort = Effort {
-        iterations: 3,
-        reduction: 1e-2,
-        smoothing: 0.0,
+        allowed: 0.0,
+        slowest: None,
     };
 }
 
@@ -66,6 +74,11 @@ pub(super) const LEAST_SCALE: f64 = 1e-7;
 /// Least 1 + gλ of a patch that can be rolled: so much nearer to the apex than
 /// the middle is an end of a ruling.
 const SLOWEST: f64 = 0.01;
+/// The area of a patch's points and what they take up on it differ by less
+/// than this factor …
+const ASTRAY: f64 = 2.5;
+/// … and this share of the strip, for patches of few points.
+const LITTLE: f64 = 0.02;
 /// Damping at the start: strains are known to a few percent.
 const DAMPING: f64 = 1e-3;
 
@@ -76,6 +89,7 @@ impl Sample {
         Sample {
             points: kept.iter().map(|i| self.points[*i]).collect(),
             weights: kept.iter().map(|i| self.weights[*i] / total).collect(),
+            area: self.area,
         }
     }
 
@@ -101,34 +115,62 @@ impl Fitted {
     }
 
     /// The root mean square, or infinity for a chain that nobody can roll: a
-    /// patch without points has run out of the strip, and one that holds its
-    /// apex is no plate.
+    /// patch without points has run out of the strip, one that holds its apex
+    /// is no plate, and one whose points take up much more or less of it than
+    /// of the strip lies elsewhere, or holds the strip folded.
     pub(super) fn worth(&self, sample: &Sample) -> f64 {
         let is_empty = |[low, high]: &[f64; 2]| low >= high;
-        let speeds = self.lambda.iter().zip(&self.chain.strains);
-        let slowest = speeds
-            .flat_map(|(range, strain)| range.map(|l| strain.speed(l)))
-            .fold(f64::INFINITY, f64::min);
-        let rms = self.rms(sample);
-        if self.lambda.iter().any(is_empty) || slowest < SLOWEST || !rms.is_finite() {
-            f64::INFINITY
-        } else {
-            rms
+        if self.lambda.iter().any(is_empty) || self.holds_an_apex() || self.is_astray(sample) {
+            return f64::INFINITY;
         }
+        Some(self.rms(sample))
+            .filter(|r| r.is_finite())
+            .unwrap_or(f64::INFINITY)
     }
 
-    /// The same surface with its worst patch cut in two: the one that adds
-    /// most to the squares.
-    pub(super) fn split_at_worst(&self, sample: &Sample) -> Fitted {
+    /// Whether the rulings of a patch reach its apex.
+    pub(super) fn holds_an_apex(&self) -> bool {
+        let speeds = self.before_apex.iter().zip(&self.chain.strains);
+        let mut all = speeds.flat_map(|(range, strain)| range.map(|l| strain.speed(l)));
+        // Not a number is no speed.
+        !all.all(|speed| speed >= SLOWEST)
+    }
+
+    /// Whether the area of a patch's points differs much from what they take
+    /// up on it.
+    fn is_astray(&self, sample: &Sample) -> bool {
+        let mut areas = vec![0.0; self.chain.len()];
+        for (home, weight) in self.homes.iter().zip(&sample.weights) {
+            areas[*home as usize] += weight * sample.area;
+        }
+        let little = LITTLE * sample.area;
+        let differ = |(a, b): (&f64, &f64)| a.max(*b) > ASTRAY * a.min(*b) + little;
+        areas.iter().zip(&self.covered).any(differ)
+    }
+
+    /// Patches by what they add to the squares, most first.
+    pub(super) fn worst(&self, sample: &Sample) -> Vec<usize> {
         let mut sums = vec![0.0; self.chain.len()];
         for ((home, w), d) in self.homes.iter().zip(&sample.weights).zip(&self.distances) {
             sums[*home as usize] += w * d * d;
         }
-        let worst = (0..sums.len()).max_by(|a, b| sums[*a].total_cmp(&sums[*b]));
-        let worst = worst.unwrap_or(0);
-        let after = |home: &u32| home + u32::from(*home as usize > worst);
+        let mut order: Vec<usize> = (0..sums.len()).collect();
+        order.sort_by(|a, b| sums[*b].total_cmp(&sums[*a]));
+        order
+    }
+
+    /// The same surface with a patch cut in two.
+    pub(super) fn split(&self, sample: &Sample, patch: usize) -> Fitted {
+        let after = |home: &u32| home + u32::from(*home as usize > patch);
         let homes: Vec<u32> = self.homes.iter().map(after).collect();
-        Fitted::settle(sample, &self.chain.split(worst), &homes)
+        Fitted::settle(sample, &self.chain.split(patch), &homes)
+    }
+
+    /// A patch and the next made one.
+    pub(super) fn merged(&self, sample: &Sample, patch: usize) -> Fitted {
+        let after = |home: &u32| home - u32::from(*home as usize > patch);
+        let homes: Vec<u32> = self.homes.iter().map(after).collect();
+        Fitted::settle(sample, &self.chain.merged(patch), &homes)
     }
 
     /// Finds the points on a chain, each starting from a patch, and moves the
@@ -140,7 +182,7 @@ impl Fitted {
             (patch as u32, foot)
         };
         let feet: Vec<_> = sample.points.par_iter().zip(homes).map(place).collect();
-        let mut lambda = vec![[f64::INFINITY, f64::NEG_INFINITY]; chain.len()];
+        let mut lambda = vec![NOTHING; chain.len()];
         let mut chain = chain.clone();
         let last = chain.len() - 1;
         let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
@@ -169,15 +211,21 @@ impl Fitted {
             2 * patch + u32::from(foot.arc > 0.5 * (low + high))
         };
         let cells = feet.iter().map(cell).collect();
+        let strips = Strips::new(&feet, &chain);
+        let covered = strips.areas(&chain);
+        let mut before_apex = strips.with_neighbours(&chain, &lambda);
         let centres: Vec<f64> = lambda.iter().map(|[a, b]| 0.5 * (a + b)).collect();
         for (i, range) in lambda.iter_mut().enumerate() {
             *range = range.map(|l| l - centres[i]);
+            before_apex[i] = before_apex[i].map(|l| l - centres[i]);
         }
         Fitted {
             chain: chain.rebased(&centres),
             homes: feet.iter().map(|(patch, _)| *patch).collect(),
             lambda,
             cells,
+            before_apex,
+            covered,
             distances: feet.iter().map(|(_, foot)| foot.distance).collect(),
             iterations: 0,
             termination: "not-needed",
@@ -218,8 +266,10 @@ impl Fitted {
             weights,
             homes: &self.homes,
         };
-        let mut problem = Problem::new(&self.chain, points, &self.lambda, freedom);
+        let mut problem = Problem::new(&self.chain, points, &self.before_apex, freedom);
         problem.smoothing = effort.smoothing;
+        problem.allowed = effort.allowed;
+        problem.slowest = effort.slowest.unwrap_or(problem.slowest);
         let settings = Settings {
             iterations: effort.iterations,
             gradient: 1e-32,
@@ -235,5 +285,75 @@ impl Fitted {
         fitted.iterations = self.iterations + report.iterations;
         fitted.termination = report.termination.as_str();
         Ok(fitted)
+    }
+}
+
+/// No range yet.
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+fn is_something([low, high]: &[f64; 2]) -> bool {
+    low <= high
+}
+
+/// The range of both.
+fn union(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// Every patch cut across into strips, with the range of λ of the points in
+/// each.
+struct Strips(Vec<Vec<[f64; 2]>>);
+
+impl Strips {
+    fn new(feet: &[(u32, Foot)], chain: &Chain) -> Self {
+        /// Strips of a patch at most.
+        const MOST: usize = 8;
+        /// Points that tell how wide a strip is.
+        const ENOUGH: usize = 8;
+        let mut counts = vec![0_usize; chain.len()];
+        for (patch, _) in feet {
+            counts[*patch as usize] += 1;
+        }
+        let strips = |count: &usize| vec![NOTHING; (count / ENOUGH).clamp(1, MOST)];
+        let mut ranges: Vec<Vec<[f64; 2]>> = counts.iter().map(strips).collect();
+        for (patch, foot) in feet {
+            let [low, high] = chain.reach[*patch as usize];
+            let strips = &mut ranges[*patch as usize];
+            let at = (foot.arc - low) / (high - low) * strips.len() as f64;
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let strip = (at.max(0.0) as usize).min(strips.len() - 1);
+            strips[strip] = union(strips[strip], [foot.lambda; 2]);
+        }
+        Strips(ranges)
+    }
+
+    /// Area that the points of each patch take up on it.
+    fn areas(&self, chain: &Chain) -> Vec<f64> {
+        let area = |(patch, strips): (usize, &Vec<[f64; 2]>)| {
+            let [low, high] = chain.reach[patch];
+            let filled = || strips.iter().filter(|r| is_something(r));
+            let across = |[a, b]: &[f64; 2]| (b - a) * chain.strains[patch].speed(0.5 * (a + b));
+            // A strip without points is as wide as the others.
+            (high - low) * filled().map(across).sum::<f64>() / filled().count().max(1) as f64
+        };
+        self.0.iter().enumerate().map(area).collect()
+    }
+
+    /// Ranges of λ of the patches together with those of their neighbours next
+    /// to the joints.
+    fn with_neighbours(&self, chain: &Chain, own: &[[f64; 2]]) -> Vec<[f64; 2]> {
+        let mut wide = own.to_vec();
+        for joint in 0..chain.len() - 1 {
+            let last = self.0[joint].iter().rfind(|r| is_something(r));
+            let first = self.0[joint + 1].iter().find(|r| is_something(r));
+            let offset = chain.offset(joint);
+            if let Some(range) = last {
+                wide[joint + 1] = union(wide[joint + 1], range.map(|l| l - offset));
+            }
+            if let Some(range) = first {
+                wide[joint] = union(wide[joint], range.map(|l| l + offset));
+            }
+        }
+        wide
     }
 }

@@ -141,6 +141,7 @@ impl Stage<'_> {
         };
         let around: Vec<usize> = (1..=(count + BEYOND).min(ladder.most())).collect();
         ladder.solve(&around)?;
+        ladder.improve(count)?;
         let mut fitted = count::best(ladder, count, norm, 0.0)?;
         if self.options.simplify {
             let limit = match self.options.goal {
@@ -164,7 +165,7 @@ impl Stage<'_> {
         };
         let rung = ladder.rung(count)?;
         let mut others: Vec<Choice> = std::iter::once(rung.fitted)
-            .chain(rung.other)
+            .chain(rung.others)
             .map(with)
             .collect();
         if let Goal::Tolerance(tolerance) = self.options.goal {

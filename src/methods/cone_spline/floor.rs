@@ -26,6 +26,8 @@ const STAGE: Effort = Effort {
     iterations: 15,
     reduction: 1e-2,
     smoothing: 0.0,
+    allowed: 0.0,
+    slowest: None,
 };
 /// The last stage.
 pub(super) const LAST: Effort = Effort {
@@ -102,8 +104,32 @@ pub(super) fn floor(
         .par_iter()
         .map(pulled)
         .collect::<Result<Vec<_>, Stop>>()?;
-    let best = all
-        .into_iter()
-        .min_by(|a, b| a.worth(sample).total_cmp(&b.worth(sample)));
-    Ok(best.unwrap_or(settled))
+    // A fine chain may have patches without points.
+    let order = |f: &Fitted| (f.holds_an_apex(), f.rms(sample));
+    let better = |a: &Fitted, b: &Fitted| {
+        let (a, b) = (order(a), order(b));
+        a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))
+    };
+    let mut best = all.into_iter().min_by(better).unwrap_or(settled);
+    while let Some(long) = overlong(&best.chain) {
+        best = best.split(sample, long);
+    }
+    // Where the rulings were guessed badly, joints that stand still hold the
+    // chain back.
+    let free = Freedom::full(best.chain.len());
+    let loose = best.relaxed(sample, &free, LAST, control)?;
+    Ok(std::cmp::min_by(best, loose, better))
+}
+
+/// A patch that is much longer than they are on average: an end that took what
+/// the others left.
+fn overlong(chain: &Chain) -> Option<usize> {
+    /// So much longer.
+    const OVERLONG: f64 = 2.0;
+    /// Of so many patches at most.
+    const MOST: usize = 60;
+    let length = |i: usize| chain.reach[i][1] - chain.reach[i][0];
+    let mean = (0..chain.len()).map(length).sum::<f64>() / chain.len() as f64;
+    let longest = (0..chain.len()).max_by(|a, b| length(*a).total_cmp(&length(*b)))?;
+    (length(longest) > OVERLONG * mean && chain.len() < MOST).then_some(longest)
 }

@@ -1,68 +1,76 @@
-//! The smallest largest distance, by Lawson's reweighting (Lawson 1961): least
-//! squares whose weights grow with the distances end at the minimax fit.
+//! The smallest largest distance, by bisection: for an allowed distance, least
+//! squares of what lies beyond it end at zero if a chain keeps it.
+//!
+//! Near the least largest distance few points stand out, by little, and the
+//! Gauss–Newton steps on those alone go straight there; reweighting all points
+//! (Lawson 1961) takes some hundred steps for the same.
 
 use super::engine::{Effort, Fitted, Sample};
 use super::problem::Freedom;
 use crate::methods::Control;
 use crate::solver::Stop;
 
-/// Most reweightings. Convergence is linear; the last of them change the
-/// largest distance by some 1e-3 of itself.
-const ROUNDS: usize = 60;
-/// Rounds without gain after which it ends.
-const PATIENCE: usize = 12;
-/// A gain is a fall by this share.
-const GAIN: f64 = 1e-3;
-/// Share of the original weights that stays, so that every patch stays held.
-const KEPT: f64 = 1e-4;
+/// Bisections that tell which of several starts leads lower.
+pub(super) const FEW: usize = 3;
+/// Most bisections.
+pub(super) const ROUNDS: usize = 14;
+/// The end of the bisection: so near is the bound to what was reached.
+const NEAR: f64 = 5e-3;
+/// A chain keeps what is allowed when it is beyond by no more than this share.
+const KEPT: f64 = 1e-3;
+/// Where between the bounds the next try lies: most are too low, and those
+/// cost more steps.
+const LOWER: f64 = 0.4;
+/// A try.
+const TRY: Effort = Effort {
+    iterations: 40,
+    reduction: 1e-3,
+    smoothing: 0.0,
+    allowed: 0.0,
+    slowest: None,
+};
 /// Largest distances below this are rounding.
 const EXACT: f64 = 1e-12;
 
 /// Lowers the largest distance from a least-squares fit, as far as it goes or
-/// to `enough`.
+/// to `enough`, in so many bisections at most.
 ///
 /// # Errors
 /// When the control says so.
 pub(super) fn minimax(
     fitted: &Fitted,
     (sample, freedom): (&Sample, &Freedom),
-    effort: Effort,
-    enough: f64,
+    (enough, rounds): (f64, usize),
     control: &dyn Control,
 ) -> Result<Fitted, Stop> {
     let mut best = fitted.clone();
-    let mut best_max = fitted.max();
-    let mut current = fitted.clone();
-    let mut weights = sample.weights.clone();
-    let mut waited = 0;
-    for _ in 0..ROUNDS {
-        if best_max <= enough.max(EXACT) || waited > PATIENCE {
+    let mut iterations = fitted.iterations;
+    let mut low = if fitted.worth(sample).is_finite() {
+        fitted.rms(sample)
+    } else {
+        0.0
+    };
+    for _ in 0..rounds {
+        let high = best.max();
+        if high <= enough.max(EXACT) || high - low <= NEAR * high {
             break;
         }
-        reweight(&mut weights, &current.distances, &sample.weights);
-        current = current.weighted(sample, &weights, (freedom, effort), control)?;
-        let max = current.max();
-        waited = if max < best_max * (1.0 - GAIN) {
-            0
-        } else {
-            waited + 1
-        };
-        if max < best_max && current.worth(sample).is_finite() {
-            best_max = max;
-            best = current.clone();
+        if enough > 0.0 && low >= enough {
+            break;
+        }
+        // Also below what is enough: there fewer steps lead past it.
+        let allowed = high - LOWER * (high - low);
+        let effort = Effort { allowed, ..TRY };
+        let tried = best.relaxed(sample, freedom, effort, control)?;
+        iterations += tried.iterations - best.iterations;
+        let max = tried.max();
+        if max > allowed * (1.0 + KEPT) {
+            low = allowed;
+        }
+        if max < high && tried.worth(sample).is_finite() {
+            best = tried;
         }
     }
-    best.iterations = current.iterations;
+    best.iterations = iterations;
     Ok(best)
-}
-
-/// w ← w |d|, adding up to 1.
-fn reweight(weights: &mut [f64], distances: &[f64], original: &[f64]) {
-    let product = |(w, d): (&f64, &f64)| w * d.abs();
-    let sum: f64 = weights.iter().zip(distances).map(product).sum();
-    if sum > 0.0 {
-        for ((w, d), o) in weights.iter_mut().zip(distances).zip(original) {
-            *w = (1.0 - KEPT) * *w * d.abs() / sum + KEPT * o;
-        }
-    }
 }

@@ -10,7 +10,7 @@
 //! number of patches.
 
 use super::chain::{Chain, Placed};
-use crate::geometry::cone::{Foot, FootDerivatives, Frame, Strain, Twist};
+use crate::geometry::cone::{FootDerivatives, Frame, Strain, Twist};
 use crate::solver::{Blocks, LeastSquares};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
@@ -23,6 +23,12 @@ const ROOT: usize = 4;
 /// Points are summed up in runs of so many, so that sums do not depend on the
 /// number of threads.
 const RUN: usize = 4096;
+/// Least 1 + gλ at the ends of rulings: so much nearer to the apex than the
+/// middle may an end be.
+const SLOWEST: f64 = 0.02;
+/// Share of their weight that distances within the allowed one keep, so that
+/// every patch stays held.
+const WITHIN: f64 = 1e-6;
 /// Patches may not become shorter than this share of the unit length.
 pub(super) const SHORTEST: f64 = 1e-6;
 
@@ -66,6 +72,11 @@ pub(super) struct Problem<'a> {
     pub(super) lambda: &'a [[f64; 2]],
     /// Weight of the squared differences of neighbouring strains.
     pub(super) smoothing: f64,
+    /// Distances up to this hardly count, and of larger ones what is beyond:
+    /// least squares are then an end when all are within.
+    pub(super) allowed: f64,
+    /// Least 1 + gλ at the ends of a patch's rulings.
+    pub(super) slowest: f64,
     columns: Columns,
 }
 
@@ -112,6 +123,8 @@ impl<'a> Problem<'a> {
             points,
             lambda,
             smoothing: 0.0,
+            allowed: 0.0,
+            slowest: SLOWEST,
             columns: Columns::new(freedom),
         }
     }
@@ -204,10 +217,17 @@ impl<'a> Problem<'a> {
             let mut moments = vec![Moments::default(); placed.frames.len()];
             for (i, point) in (index * RUN..).zip(chunk) {
                 let (patch, foot) = placed.foot(point, homes[i] as usize);
+                let counts = self.counting(foot.distance);
                 if derivatives {
-                    moments[patch].add(weights[i], &placed.row(point, patch));
+                    let mut row = placed.row(point, patch);
+                    for (distance, share) in counts {
+                        row[MOMENTS - 1] = distance;
+                        moments[patch].add(share * weights[i], &row);
+                    }
                 } else {
-                    moments[patch].add_distance(weights[i], &foot);
+                    for (distance, share) in counts {
+                        moments[patch].add_distance(share * weights[i], distance);
+                    }
                 }
             }
             moments
@@ -223,15 +243,21 @@ impl<'a> Problem<'a> {
         sum
     }
 
-    /// How near the apex may come to the points: 1 + gλ stays above `NEAREST`.
+    /// What of a distance counts, and with which share of its weight.
+    fn counting(&self, distance: f64) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let beyond = distance - distance.clamp(-self.allowed, self.allowed);
+        let within = (self.allowed > 0.0).then_some((distance, WITHIN));
+        let counts = (beyond != 0.0 || self.allowed == 0.0).then_some((beyond, 1.0));
+        within.into_iter().chain(counts)
+    }
+
+    /// How near the apex may come to the points.
     fn push_apex_limits(&self, chain: &Chain, blocks: &mut Blocks) {
-        /// Least 1 + gλ at the ends of a patch's rulings.
-        const NEAREST: f64 = 0.02;
         /// Weight against distances of the unit strip.
         const HARD: f64 = 10.0;
         for (patch, lambda) in self.lambda.iter().enumerate() {
             let strain = chain.strains[patch];
-            let residuals = lambda.map(|l| HARD * (NEAREST - strain.speed(l)));
+            let residuals = lambda.map(|l| HARD * (self.slowest - strain.speed(l)));
             match self.columns.strains[patch][0] {
                 Some(c) => {
                     blocks.push_mixed(&residuals, 0, &[c], &lambda.map(|l| -HARD * l));
@@ -321,8 +347,8 @@ impl Moments {
         }
     }
 
-    fn add_distance(&mut self, weight: f64, foot: &Foot) {
-        self.0[MOMENTS - 1][MOMENTS - 1] += weight * foot.distance * foot.distance;
+    fn add_distance(&mut self, weight: f64, distance: f64) {
+        self.0[MOMENTS - 1][MOMENTS - 1] += weight * distance * distance;
     }
 
     fn add_all(&mut self, other: &Moments) {
@@ -413,6 +439,13 @@ mod tests {
         freedom.strains[2] = [false, true];
         let mut problem = Problem::new(&chain, all, &lambda, &freedom);
         problem.smoothing = 1e-3;
+        for allowed in [0.0, 3e-3] {
+            problem.allowed = allowed;
+            gradient_agrees(&problem);
+        }
+    }
+
+    fn gradient_agrees(problem: &Problem) {
         let cost = |x: &[f64]| {
             let mut blocks = Blocks::default();
             problem.evaluate(x, &mut blocks);

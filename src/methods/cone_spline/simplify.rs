@@ -12,6 +12,8 @@ const ATTEMPT: Effort = Effort {
     iterations: 20,
     reduction: 1e-3,
     smoothing: 0.0,
+    allowed: 0.0,
+    slowest: None,
 };
 
 /// Which of g and k a simpler kind keeps, the simplest first.

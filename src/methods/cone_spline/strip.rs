@@ -48,6 +48,7 @@ impl Strip {
         let all = Sample {
             points: target.points.iter().map(unit).collect(),
             weights: target.weights.iter().map(|w| w / total).collect(),
+            area: total * scale * scale,
         };
         let rulings: Vec<_> = target
             .rulings
