@@ -4,12 +4,13 @@ use super::count::{self, Choice};
 use super::engine::{Effort, Fitted};
 use super::floor::floor;
 use super::ladder::Ladder;
+use super::minimax::exchanged;
 use super::outcome::{ErrorPoint, Floor, Outcome, Report};
 use super::report;
 use super::request::{Goal, MOST_PIECES, Norm, Options, Request};
 use super::robust::{cleaned, shares};
 use super::segments::Segments;
-use super::simplify::simplified;
+use super::simplify::{near, simplified};
 use super::strip::{Strip, oriented};
 use super::target::Target;
 use crate::methods::{Control, FitError};
@@ -18,6 +19,12 @@ use crate::methods::{Control, FitError};
 const MORE: usize = 4;
 /// Share by which a simpler chain may be worse without being so.
 const ROUNDING: f64 = 1e-9;
+/// From the fit to a part of the points to that to all of them.
+const AGAIN: Effort = Effort {
+    iterations: 8,
+    reduction: 1e-4,
+    ..Effort::FULL
+};
 /// Numbers of patches beyond the chosen one in the error curve.
 const BEYOND: usize = 2;
 
@@ -58,24 +65,30 @@ pub fn fit_target(
     let deliver = |ladder: &Ladder, choice: Choice| {
         report::outcome(request, &target, stage.finish(ladder, choice)?)
     };
+    let rolled = |outcome: &Result<Outcome, FitError>| match outcome {
+        Ok(outcome) => can_be_rolled(outcome),
+        Err(FitError::Numerical(_)) => false,
+        Err(FitError::Invalid(_) | FitError::Stopped(_)) => true,
+    };
     let first = deliver(&ladder, choice.clone());
-    if first.as_ref().is_ok_and(can_be_rolled) {
+    if rolled(&first) {
         return first;
     }
     for other in stage.others(&mut ladder, &choice)? {
         let outcome = deliver(&ladder, other);
-        if outcome.as_ref().is_ok_and(can_be_rolled) {
+        if rolled(&outcome) {
             return outcome;
         }
     }
-    doubtful(first, choice.fitted.chain.len())
+    Err(unrollable(choice.fitted.chain.len()))
 }
 
 /// Whether neighbours meet where their sheets say: not where a ruling passes
-/// an apex.
+/// an apex, or so near to one that its cone is lost in rounding.
 pub(super) fn can_be_rolled(outcome: &Outcome) -> bool {
-    /// Far above rounding, far below what a yard sees.
-    const MEETS: f64 = 1e-6;
+    /// Far above rounding, far below what a yard sees; radians, and a share of
+    /// the model's size.
+    const MEETS: f64 = 1e-10;
     let meets = |j: &super::outcome::Join| {
         j.gap <= MEETS * outcome.model_size && j.angle_deg.to_radians() <= MEETS
     };
@@ -83,26 +96,11 @@ pub(super) fn can_be_rolled(outcome: &Outcome) -> bool {
 }
 
 /// What is said when nothing that could be rolled was found.
-pub(super) fn doubtful(
-    outcome: Result<Outcome, FitError>,
-    patches: usize,
-) -> Result<Outcome, FitError> {
-    match outcome {
-        Ok(mut outcome) => {
-            outcome.within_limits = false;
-            outcome.warnings.push(
-                "A joint runs past the apex of its patch: these patches cannot be rolled as they \
-                 are. Ask for another number of patches, or divide the strip."
-                    .to_owned(),
-            );
-            Ok(outcome)
-        }
-        Err(FitError::Numerical(_)) => Err(FitError::Numerical(format!(
-            "no chain of {patches} patches that could be rolled was found; ask for another number \
-             of patches, or divide the strip"
-        ))),
-        Err(other) => Err(other),
-    }
+fn unrollable(patches: usize) -> FitError {
+    FitError::Numerical(format!(
+        "no chain of {patches} patches that could be rolled was found; ask for another number of \
+         patches, or divide the strip"
+    ))
 }
 
 /// Whether patches may have a g and a k.
@@ -144,40 +142,64 @@ impl Stage<'_> {
         ladder.improve(count)?;
         let mut fitted = count::best(ladder, count, norm, 0.0)?;
         if self.options.simplify {
-            let limit = match self.options.goal {
-                Goal::Tolerance(tolerance) => tolerance * self.strip.scale,
-                Goal::Pieces(_) | Goal::Noise => fitted.max(),
-            };
-            let limit = limit.max(fitted.max() * (1.0 + ROUNDING));
-            let wishes = (self.options.classes, norm);
-            fitted = simplified(ladder, fitted, wishes, limit)?;
+            let limit = self.limit(&fitted);
+            fitted = simplified(ladder, fitted, (self.options.classes, norm), limit)?;
         }
+        let fitted = self.near(ladder, fitted)?;
         Ok(Choice { fitted, reachable })
     }
 
     /// Chains to turn to when the chosen one cannot be rolled: other minima of
-    /// as many patches or, for a tolerance, more patches.
+    /// as many patches or, where their number was not asked for, other numbers.
     fn others(&self, ladder: &mut Ladder, choice: &Choice) -> Result<Vec<Choice>, FitError> {
         let count = choice.fitted.chain.len();
-        let with = |fitted| Choice {
-            fitted,
-            reachable: choice.reachable,
-        };
         let rung = ladder.rung(count)?;
-        let mut others: Vec<Choice> = std::iter::once(rung.fitted)
-            .chain(rung.others)
-            .map(with)
-            .collect();
-        if let Goal::Tolerance(tolerance) = self.options.goal {
-            let enough = tolerance * self.strip.scale;
-            for more in count + 1..=(count + MORE).min(ladder.most()) {
-                others.push(with(count::best(ladder, more, self.norm(), enough)?));
-            }
-            for fewer in (1..count).rev() {
-                others.push(with(count::best(ladder, fewer, self.norm(), enough)?));
+        let mut found: Vec<Fitted> = std::iter::once(rung.fitted).chain(rung.others).collect();
+        if self.norm() == Norm::Minimax {
+            // What lies lowest comes first; what cannot be rolled so may be as
+            // it was.
+            let freedom = ladder.freedom(count);
+            let lower = |f: &Fitted| count::lowered(ladder, f, &freedom, 0.0);
+            let mut low = found.iter().map(lower).collect::<Result<Vec<_>, _>>()?;
+            low.sort_by(|a, b| a.max().total_cmp(&b.max()));
+            found.splice(..0, low);
+        }
+        if !matches!(self.options.goal, Goal::Pieces(_)) {
+            let more = count + 1..=(count + MORE).min(ladder.most());
+            for patches in more.chain((1..count).rev()) {
+                found.push(count::best(ladder, patches, self.norm(), 0.0)?);
             }
         }
-        Ok(others)
+        let keeps = |fitted: &Fitted| match self.options.goal {
+            Goal::Tolerance(tolerance) => fitted.max() <= tolerance * self.strip.scale,
+            Goal::Pieces(_) | Goal::Noise => true,
+        };
+        let mut choices = Vec::with_capacity(found.len());
+        for fitted in found {
+            let fitted = self.near(ladder, fitted)?;
+            choices.push(Choice {
+                reachable: keeps(&fitted),
+                fitted,
+            });
+        }
+        Ok(choices)
+    }
+
+    /// A chain without apices far away.
+    fn near(&self, ladder: &Ladder, fitted: Fitted) -> Result<Fitted, FitError> {
+        let limit = fitted.max() * (1.0 + ROUNDING);
+        let shape = (ladder.sample, ladder.free);
+        let wishes = (self.options.classes, self.norm());
+        Ok(near(fitted, shape, wishes, limit, ladder.control)?)
+    }
+
+    /// What a simpler chain must keep.
+    fn limit(&self, fitted: &Fitted) -> f64 {
+        let asked = match self.options.goal {
+            Goal::Tolerance(tolerance) => tolerance * self.strip.scale,
+            Goal::Pieces(_) | Goal::Noise => fitted.max(),
+        };
+        asked.max(fitted.max() * (1.0 + ROUNDING))
     }
 
     /// The chain against all points, in the unit of the request.
@@ -226,7 +248,7 @@ impl Stage<'_> {
         })
     }
 
-    /// The chain fitted again to all points, each with what it kept.
+    /// The chain fitted again to all points, each patch with what it kept.
     fn with_all_points(&self, ladder: &Ladder, fitted: &Fitted) -> Result<Fitted, FitError> {
         let all = &self.strip.all;
         let mut freedom = ladder.freedom(fitted.chain.len());
@@ -234,13 +256,17 @@ impl Stage<'_> {
             free[0] &= strain.g != 0.0;
             free[1] &= strain.k != 0.0;
         }
+        if self.norm() == Norm::Minimax && !self.options.robust {
+            let kept = &self.strip.kept;
+            return Ok(exchanged(fitted, (all, kept), &freedom, ladder.control)?);
+        }
         let start = Fitted::settle_anew(all, &fitted.chain);
         let mut weights = all.weights.clone();
         if self.options.robust {
             let kept = shares(&start.distances);
             weights.iter_mut().zip(kept).for_each(|(w, s)| *w *= s);
         }
-        Ok(start.weighted(all, &weights, (&freedom, Effort::FULL), ladder.control)?)
+        Ok(start.weighted(all, &weights, (&freedom, AGAIN), ladder.control)?)
     }
 
     /// Standard deviation of the points that count.

@@ -74,3 +74,52 @@ pub(super) fn minimax(
     best.iterations = iterations;
     Ok(best)
 }
+
+/// The least largest distance of many points, from that of a part of them:
+/// those that lie farthest join the part until none lies beyond (Remez 1934).
+///
+/// # Errors
+/// When the control says so.
+pub(super) fn exchanged(
+    fitted: &Fitted,
+    (all, kept): (&Sample, &[usize]),
+    freedom: &Freedom,
+    control: &dyn Control,
+) -> Result<Fitted, Stop> {
+    /// Exchanges; with each fewer points lie beyond.
+    const EXCHANGES: usize = 3;
+    /// Points join that lie beyond this share of the largest distance …
+    const FAR: f64 = 0.9;
+    /// … as many of the farthest at most.
+    const MOST: usize = 4000;
+    let mut part = kept.to_vec();
+    let mut current = Fitted::settle_anew(all, &fitted.chain);
+    let mut best = current.clone();
+    for _ in 0..EXCHANGES {
+        let among = part.iter().map(|i| current.distances[*i].abs());
+        let known = among.fold(0.0, f64::max);
+        if current.max() <= (1.0 + KEPT) * known {
+            break;
+        }
+        let mut far: Vec<usize> = (0..all.points.len())
+            .filter(|i| current.distances[*i].abs() > FAR * known)
+            .collect();
+        far.sort_by(|a, b| {
+            let [a, b] = [a, b].map(|i| current.distances[*i].abs());
+            b.total_cmp(&a)
+        });
+        part.extend(far.into_iter().take(MOST));
+        part.sort_unstable();
+        part.dedup();
+        let sample = all.only(&part);
+        let homes: Vec<u32> = part.iter().map(|i| current.homes[*i]).collect();
+        let start = Fitted::settle(&sample, &current.chain, &homes);
+        let lower = minimax(&start, (&sample, freedom), (0.0, ROUNDS), control)?;
+        current = Fitted::settle(all, &lower.chain, &current.homes);
+        current.iterations = lower.iterations;
+        if current.max() < best.max() && current.worth(all).is_finite() {
+            best = current.clone();
+        }
+    }
+    Ok(best)
+}

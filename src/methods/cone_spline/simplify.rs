@@ -1,10 +1,12 @@
 //! Cones become cylinders, and both become planes, where that keeps the limit.
 
-use super::count::lowered;
-use super::engine::{Effort, Fitted};
+use super::engine::{Effort, Fitted, Sample};
 use super::ladder::Ladder;
+use super::minimax::{ROUNDS, minimax};
 use super::problem::Freedom;
 use super::request::{Classes, Norm};
+use crate::geometry::cone::Strain;
+use crate::methods::Control;
 use crate::solver::Stop;
 
 /// The effort of one attempt.
@@ -40,7 +42,8 @@ pub(super) fn simplified(
             }
             let mut narrower = freedom.clone();
             narrower.strains[patch] = kind;
-            let tried = attempt(ladder, &best, &narrower, norm, limit)?;
+            let shape = (ladder.sample, &narrower);
+            let tried = attempt(&best, shape, norm, limit, ladder.control)?;
             if tried.max() <= limit && tried.worth(ladder.sample).is_finite() {
                 (best, freedom) = (tried, narrower);
             }
@@ -65,22 +68,79 @@ fn by_harm(fitted: &Fitted, kind: [bool; 2]) -> Vec<usize> {
     order
 }
 
+/// The chain without cones whose apex, or cylinders whose axis, is so far away
+/// that writing them by it would cost more digits than a yard sees: those are
+/// made cylinders and planes, and the chain fitted again.
+///
+/// # Errors
+/// When the control says so.
+pub(super) fn near(
+    fitted: Fitted,
+    (sample, free): (&Sample, [bool; 2]),
+    (classes, norm): (Classes, Norm),
+    limit: f64,
+    control: &dyn Control,
+) -> Result<Fitted, Stop> {
+    let kind = |strain: &Strain| {
+        let [cone, bent] = [strain.g, strain.k].map(|v| v.abs() >= FARTHEST);
+        if !cone && !bent && classes.planes {
+            [false, false]
+        } else if !cone && classes.cylinders {
+            [false, free[1] && strain.k != 0.0]
+        } else {
+            [free[0] && strain.g != 0.0, free[1] && strain.k != 0.0]
+        }
+    };
+    let freedom = Freedom {
+        strains: fitted.chain.strains.iter().map(kind).collect(),
+        joints: true,
+    };
+    let values = |s: &Strain| [s.g, s.k];
+    let lost = |(strain, free): (&Strain, &[bool; 2])| {
+        (values(strain).iter().zip(free)).any(|(v, free)| *v != 0.0 && !free)
+    };
+    let mut pairs = fitted.chain.strains.iter().zip(&freedom.strains);
+    if !pairs.any(lost) {
+        return Ok(fitted);
+    }
+    let moved = attempt(&fitted, (sample, &freedom), norm, limit, control)?;
+    // Where nothing that can be rolled is left, digits are the lesser loss.
+    Ok(if moved.worth(sample).is_finite() {
+        moved
+    } else {
+        fitted
+    })
+}
+
+/// The cylinder or plane that a cone with a far apex is taken for.
+pub(super) fn without_far_apex(strain: Strain) -> Strain {
+    let [cone, bent] = [strain.g, strain.k].map(|v| v.abs() >= FARTHEST);
+    Strain {
+        g: if cone { strain.g } else { 0.0 },
+        k: if cone || bent { strain.k } else { 0.0 },
+    }
+}
+
+/// Curvatures, in the unit of the fit, below which an apex or an axis is far
+/// away: of coordinates 1e5 times the strip, rounding takes 1e-11 of it.
+const FARTHEST: f64 = 1e-5;
+
 fn attempt(
-    ladder: &Ladder,
     fitted: &Fitted,
-    freedom: &Freedom,
+    (sample, freedom): (&Sample, &Freedom),
     norm: Norm,
     limit: f64,
+    control: &dyn Control,
 ) -> Result<Fitted, Stop> {
     let mut chain = fitted.chain.clone();
     for (strain, free) in chain.strains.iter_mut().zip(&freedom.strains) {
         strain.g *= f64::from(free[0]);
         strain.k *= f64::from(free[1]);
     }
-    let start = Fitted::settle(ladder.sample, &chain, &fitted.homes);
-    let squares = start.relaxed(ladder.sample, freedom, ATTEMPT, ladder.control)?;
+    let start = Fitted::settle(sample, &chain, &fitted.homes);
+    let squares = start.relaxed(sample, freedom, ATTEMPT, control)?;
     if norm == Norm::LeastSquares || squares.max() <= limit {
         return Ok(squares);
     }
-    lowered(ladder, &squares, freedom, limit)
+    minimax(&squares, (sample, freedom), (limit, ROUNDS), control)
 }

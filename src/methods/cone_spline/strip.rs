@@ -30,6 +30,8 @@ pub(super) struct Strip {
     pub(super) homes: Vec<u32>,
     /// The same for the sample.
     pub(super) sample_homes: Vec<u32>,
+    /// Which of all points are in the sample.
+    pub(super) kept: Vec<usize>,
     /// Unit of the fit per unit of the request.
     pub(super) scale: f64,
     centre: Vector3<f64>,
@@ -62,6 +64,7 @@ impl Strip {
         Some(Strip {
             sample: all.only(&kept),
             sample_homes: kept.iter().map(|i| homes[*i]).collect(),
+            kept,
             all,
             start,
             homes,

@@ -38,13 +38,14 @@ mod tests;
 
 use super::distances;
 use super::engine::{Effort, Fitted};
-use super::fit::{can_be_rolled, doubtful};
+use super::fit::can_be_rolled;
 use super::floor::floor;
 use super::outcome::{ErrorPoint, Floor, Outcome, Report};
 use super::problem::Freedom;
 use super::report;
 use super::request::{Classes, Goal, Norm, Options, Request};
 use super::sheet;
+use super::simplify::without_far_apex;
 use super::strip::{Strip, oriented};
 use super::target::Target;
 use crate::methods::{Control, FitError, Issue};
@@ -164,7 +165,11 @@ pub(super) fn fit_target(
              number of patches, or take the solver \"own\""
         ))
     };
-    let chain = stitch::stitched(&found.surface, &found.cones, &breaks).ok_or_else(none)?;
+    let mut chain = stitch::stitched(&found.surface, &found.cones, &breaks).ok_or_else(none)?;
+    // Its cones of flat and of cylindrical regions have their apices anywhere.
+    for strain in &mut chain.strains {
+        *strain = without_far_apex(*strain);
+    }
     let rigid = Freedom {
         strains: vec![[false; 2]; pieces],
         joints: false,
@@ -204,8 +209,8 @@ pub(super) fn fit_target(
     );
     let mut outcome = match outcome {
         Ok(outcome) if can_be_rolled(&outcome) => outcome,
-        Err(FitError::Numerical(_)) => return Err(none()),
-        other => doubtful(other, pieces)?,
+        Ok(_) | Err(FitError::Numerical(_)) => return Err(none()),
+        Err(other) => return Err(other),
     };
     if !found.is_conical() {
         outcome.warnings.push(format!(
