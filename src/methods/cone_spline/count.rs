@@ -134,9 +134,10 @@ pub(super) fn for_tolerance(
         }
     }
     // Of an exact spline the right number may be found and those next to it not.
-    let all: Vec<usize> = (1..=count).collect();
+    let most = count;
+    let all: Vec<usize> = (1..=most).collect();
     ladder.solve(&all)?;
-    for k in 1..count {
+    for k in 1..most {
         let fitted = ladder.rung(k)?.fitted;
         if height(ladder, &fitted) <= tolerance {
             (found, count) = (fitted, k);

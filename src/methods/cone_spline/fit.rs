@@ -44,7 +44,8 @@ pub fn fit_target(
     control.progress("developing", 10.0);
     let mut best = floor(&strip.sample, &strip.start, &strip.sample_homes, control)?;
     if request.options.robust {
-        best = cleaned(&mut strip.sample, best, control)?;
+        let start = (&strip.start, strip.sample_homes.as_slice());
+        best = cleaned(&mut strip.sample, best, start, control)?;
     }
     control.progress("dividing", 20.0);
     let most = match request.options.goal {
@@ -212,6 +213,7 @@ impl Stage<'_> {
         let length = 1.0 / strip.scale;
         let error_curve: Vec<ErrorPoint> = ladder
             .solved()
+            .filter(|(_, rung)| rung.fitted.worth(ladder.sample).is_finite())
             .map(|(patches, rung)| {
                 let [max, mean, rms] = ladder
                     .sample

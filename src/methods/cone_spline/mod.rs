@@ -31,13 +31,21 @@
 //! * Its K-means on axes finds patches that look alike, not patches that fit,
 //!   and knows no planes. Here dynamic programming over the cost of every
 //!   interval finds the best division for every number of patches at once.
+//! * The largest distance is made least too, by a bisection over what is
+//!   allowed (`minimax`).
+//! * A chain counts only if the area that the strip takes up on it is that of
+//!   the strip, and no ruling of a joint passes an apex; the returned cones are
+//!   measured, and joins of more than 1e-10 are not handed out.
 //! * The number of patches follows from a tolerance, or from the noise.
 //!
 //! The paper's own way is kept (`paper`) to be measured against.
 //!
 //! # Limits
-//! * A strip whose rulings are found badly (a helix of several turns) may lead
-//!   to no chain that can be rolled, which is then said.
+//! * With too few patches for its shape a strip may lead to no chain that can
+//!   be rolled, which is then said.
+//! * Cones whose apex is 1e5 strip lengths away, and cylinders of such a
+//!   radius, are made cylinders and planes: written by that apex they would
+//!   lose more digits than joins of 1e-10 allow.
 //! * The floor is the best of the fits made, no proven bound; strips of more
 //!   than some thousand vertices are divided on a part of them.
 //! * The error curve is by least squares, whatever norm the answer is for.
@@ -58,6 +66,8 @@ mod floor;
 mod ladder;
 mod minimax;
 pub mod outcome;
+#[cfg(test)]
+mod page_tests;
 mod paper;
 mod problem;
 mod report;

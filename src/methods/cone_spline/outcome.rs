@@ -24,7 +24,8 @@ pub struct Outcome {
     pub joins: Vec<Join>,
     /// The flat pattern: one piece, or several where it would overlap itself.
     pub pattern: Vec<FlatPiece>,
-    /// What other numbers of patches would give.
+    /// What numbers of patches give by least squares, whatever norm this answer
+    /// is for; only of those that can be rolled.
     pub error_curve: Vec<ErrorPoint>,
     /// Distance from the vertices of the strip to the patches.
     pub to_surface: Distance,

@@ -43,7 +43,7 @@ pub struct ConeSplineSpecific {
     pub joins: Vec<ConeJoin>,
     /// The flat pattern: one piece, or several where it would overlap itself.
     pub pattern: Vec<ConePatternPiece>,
-    /// What other numbers of patches would give.
+    /// What other numbers of patches would give, by least squares.
     pub error_curve: Vec<ConeErrorPoint>,
     /// Signed distance of every vertex, in the order of the mesh (for a
     /// surface: of the mesh laid on it), positive on the side of its normals;
