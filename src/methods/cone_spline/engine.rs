@@ -309,7 +309,7 @@ impl Strips {
         /// Strips of a patch at most.
         const MOST: usize = 8;
         /// Points that tell how wide a strip is.
-        const ENOUGH: usize = 8;
+        const ENOUGH: usize = 4;
         let mut counts = vec![0_usize; chain.len()];
         for (patch, _) in feet {
             counts[*patch as usize] += 1;
