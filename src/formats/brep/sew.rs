@@ -10,6 +10,9 @@
 //! 5. Faces that share edges are turned until every edge is run through once
 //!    in each direction, and gathered into shells.
 //!
+//! A fit may leave a fan of no width: what is narrower than that distance has
+//! no face, and its two sides are one edge of the neighbours.
+//!
 //! Limits: an edge joins two faces; a third brings an edge of its own.
 
 use super::Sheet;
@@ -141,13 +144,29 @@ fn cut(surface: BSplineSurface, axis: Axis) -> Vec<BSplineSurface> {
 }
 
 /// The four sides in the order and direction of the loop round `du × dv`,
-/// without those that are points.
+/// without those that are points; none of a sliver between two sides that run
+/// back along each other.
 fn sides(surface: &BSplineSurface, weld: f64) -> Vec<BSplineCurve> {
     let [v_first, v_last, u_first, u_last] = surface.boundary_curves();
-    [v_first, u_last, v_last.reversed(), u_first.reversed()]
+    let sides: Vec<BSplineCurve> = [v_first, u_last, v_last.reversed(), u_first.reversed()]
         .into_iter()
         .filter(|side| side.bounding_box().diagonal() > weld)
-        .collect()
+        .collect();
+    match &sides[..] {
+        [there, back] if is_run_back(there, back, weld) => Vec::new(),
+        _ => sides,
+    }
+}
+
+fn is_run_back(there: &BSplineCurve, back: &BSplineCurve, weld: f64) -> bool {
+    let at = |curve: &BSplineCurve, share: f64| {
+        let [first, last] = curve.domain();
+        curve.point(first + (last - first) * share)
+    };
+    (0..COMPARED).all(|k| {
+        let share = k as f64 / (COMPARED - 1) as f64;
+        (at(there, share) - at(back, 1.0 - share)).norm() <= weld
+    })
 }
 
 /// Vertices, found by the cell in which they lie.

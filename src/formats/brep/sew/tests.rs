@@ -141,3 +141,27 @@ fn nothing_gives_nothing() {
     assert!(sew(&[sheet(point)]).faces.is_empty());
     assert!(sew(&[]).shells.is_empty());
 }
+
+#[test]
+fn a_fan_of_no_width_has_no_face() {
+    // Three columns of points, the first two 1e-10 apart.
+    let points = [0.0, 1e-10, 1.0].map(|x| [0.0, 1.0].map(|y| Point3::new(x, y, 0.0)));
+    let surface = BSplineSurface::new(
+        [1, 1],
+        [vec![0.0, 0.0, 1e-10, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]],
+        points.concat(),
+        None,
+    )
+    .unwrap();
+    let neighbour = bilinear([
+        [-1.0, 0.0, 0.0],
+        [-1.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ]);
+    let sewn = sew(&[sheet(surface), sheet(neighbour)]);
+    assert_eq!((sewn.faces.len(), sewn.shells.len()), (2, 1));
+    assert_eq!((sewn.edges.len(), sewn.vertices.len()), (7, 6));
+    assert_oriented(&sewn);
+    assert_closed(&sewn);
+}
