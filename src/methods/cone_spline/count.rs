@@ -22,14 +22,6 @@ const PATIENCE: usize = 3;
 /// with less noise than that no patch is added.
 const USELESS: f64 = 1e-4;
 
-/// The chain that was chosen.
-#[derive(Debug, Clone)]
-pub(super) struct Choice {
-    pub(super) fitted: Fitted,
-    /// Whether the tolerance is kept or could be.
-    pub(super) reachable: bool,
-}
-
 /// The best chain of so many patches in a norm; the search for the least
 /// largest distance ends at `enough`.
 ///
@@ -101,7 +93,8 @@ fn within(ladder: &mut Ladder, patches: usize, norm: Norm, tolerance: f64) -> Re
 }
 
 /// As few patches as keep every point within a tolerance, from where the
-/// division of the best developable says, up and then down.
+/// division of the best developable says, up and then down. Where none does,
+/// as few as come nearest to it.
 ///
 /// # Errors
 /// When the control says so.
@@ -110,51 +103,48 @@ pub(super) fn for_tolerance(
     tolerance: f64,
     norm: Norm,
     floor: f64,
-) -> Result<Choice, Stop> {
+) -> Result<usize, Stop> {
     let near = SLACK * tolerance.max(floor);
     let enough = |k: &usize| ladder.segments.value(Aim::Max, *k) <= near;
     let mut count = (1..=ladder.most()).find(enough).unwrap_or(ladder.most());
-    let mut found = within(ladder, count, norm, tolerance)?;
-    let mut waited = 0;
-    let mut least = found.clone();
-    while height(ladder, &found) > tolerance {
-        if count == ladder.most() || (waited >= PATIENCE && floor > tolerance) {
-            return Ok(Choice {
-                fitted: least,
-                reachable: false,
-            });
+    // Of an exact spline the right number may be found and those next to it not.
+    let few: Vec<usize> = (1..=count).collect();
+    ladder.solve(&few)?;
+    for k in few {
+        let fitted = ladder.rung(k)?.fitted;
+        if height(ladder, &fitted) <= tolerance {
+            return fewer(ladder, k, norm, tolerance);
         }
-        count += 1;
-        found = within(ladder, count, norm, tolerance)?;
-        if height(ladder, &found) < (1.0 - GAIN) * height(ladder, &least) {
-            waited = 0;
-            least = found.clone();
+    }
+    let (mut least, mut nearest, mut waited) = (f64::INFINITY, count, 0);
+    loop {
+        let found = within(ladder, count, norm, tolerance)?;
+        let reached = height(ladder, &found);
+        if reached <= tolerance {
+            return fewer(ladder, count, norm, tolerance);
+        }
+        if reached < (1.0 - GAIN) * least {
+            (least, nearest, waited) = (reached, count, 0);
         } else {
             waited += 1;
         }
-    }
-    // Of an exact spline the right number may be found and those next to it not.
-    let most = count;
-    let all: Vec<usize> = (1..=most).collect();
-    ladder.solve(&all)?;
-    for k in 1..most {
-        let fitted = ladder.rung(k)?.fitted;
-        if height(ladder, &fitted) <= tolerance {
-            (found, count) = (fitted, k);
-            break;
+        if count == ladder.most() || (waited >= PATIENCE && floor > tolerance) {
+            return Ok(nearest);
         }
+        count += 1;
     }
+}
+
+/// The least number, counting down from one that keeps a tolerance, that does.
+fn fewer(ladder: &mut Ladder, mut count: usize, norm: Norm, tolerance: f64) -> Result<usize, Stop> {
     while count > 1 {
-        let fewer = within(ladder, count - 1, norm, tolerance)?;
-        if height(ladder, &fewer) > tolerance {
+        let found = within(ladder, count - 1, norm, tolerance)?;
+        if height(ladder, &found) > tolerance {
             break;
         }
-        (found, count) = (fewer, count - 1);
+        count -= 1;
     }
-    Ok(Choice {
-        fitted: found,
-        reachable: true,
-    })
+    Ok(count)
 }
 
 /// As many patches as the noise lets one tell apart: the least of

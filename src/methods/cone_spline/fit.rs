@@ -1,6 +1,6 @@
 //! From a target to the answer: the stages in order.
 
-use super::count::{self, Choice};
+use super::count;
 use super::engine::{Effort, Fitted};
 use super::floor::floor;
 use super::ladder::Ladder;
@@ -110,6 +110,14 @@ fn free(options: &Options) -> [bool; 2] {
     [classes.cones, classes.cones || classes.cylinders]
 }
 
+/// The chain that was chosen.
+#[derive(Debug, Clone)]
+struct Choice {
+    fitted: Fitted,
+    /// Whether the tolerance is kept or could be.
+    reachable: bool,
+}
+
 /// What the last stages share.
 struct Stage<'a> {
     options: &'a Options,
@@ -129,13 +137,12 @@ impl Stage<'_> {
     /// The chain that was asked for, with its neighbours in the ladder.
     fn choose(&self, ladder: &mut Ladder) -> Result<Choice, FitError> {
         let norm = self.norm();
-        let (count, reachable) = match self.options.goal {
-            Goal::Pieces(k) => (k.min(ladder.most()), true),
-            Goal::Noise => (count::for_noise(ladder)?, true),
+        let count = match self.options.goal {
+            Goal::Pieces(k) => k.min(ladder.most()),
+            Goal::Noise => count::for_noise(ladder)?,
             Goal::Tolerance(tolerance) => {
                 let tolerance = tolerance * self.strip.scale;
-                let choice = count::for_tolerance(ladder, tolerance, norm, self.floor.max())?;
-                (choice.fitted.chain.len(), choice.reachable)
+                count::for_tolerance(ladder, tolerance, norm, self.floor.max())?
             }
         };
         let around: Vec<usize> = (1..=(count + BEYOND).min(ladder.most())).collect();
@@ -147,7 +154,7 @@ impl Stage<'_> {
             fitted = simplified(ladder, fitted, (self.options.classes, norm), limit)?;
         }
         let fitted = self.near(ladder, fitted)?;
-        Ok(Choice { fitted, reachable })
+        Ok(self.judged(fitted))
     }
 
     /// Chains to turn to when the chosen one cannot be rolled: other minima of
@@ -171,19 +178,20 @@ impl Stage<'_> {
                 found.push(count::best(ladder, patches, self.norm(), 0.0)?);
             }
         }
-        let keeps = |fitted: &Fitted| match self.options.goal {
+        let mut choices = Vec::with_capacity(found.len());
+        for fitted in found {
+            choices.push(self.judged(self.near(ladder, fitted)?));
+        }
+        Ok(choices)
+    }
+
+    /// A chain with whether it keeps the tolerance.
+    fn judged(&self, fitted: Fitted) -> Choice {
+        let reachable = match self.options.goal {
             Goal::Tolerance(tolerance) => fitted.max() <= tolerance * self.strip.scale,
             Goal::Pieces(_) | Goal::Noise => true,
         };
-        let mut choices = Vec::with_capacity(found.len());
-        for fitted in found {
-            let fitted = self.near(ladder, fitted)?;
-            choices.push(Choice {
-                reachable: keeps(&fitted),
-                fitted,
-            });
-        }
-        Ok(choices)
+        Choice { fitted, reachable }
     }
 
     /// A chain without apices far away.
