@@ -1,12 +1,14 @@
 //! Surfaces and curves on their way to a CAD desk: what the STEP and the IGES
 //! writer draw, and how faces are sewn along the edges that they share.
 
+mod bounds;
 mod sew;
 
 use super::length_unit::LengthUnit;
 use crate::geometry::{BSplineCurve, BSplineSurface};
-use nalgebra::Point3;
+use nalgebra::{Point2, Point3};
 
+pub(super) use bounds::{Bound, bounds};
 pub(super) use sew::{Edge, Face, Sewn, sew};
 
 /// Surfaces and curves with their names; all lengths in `units`.
@@ -31,6 +33,9 @@ pub struct Sheet {
     pub name: String,
     /// The surface.
     pub surface: BSplineSurface,
+    /// Where only a part of it is meant: that part's outline in (u, v), closed,
+    /// the first point not repeated.
+    pub outline: Option<Vec<Point2<f64>>>,
 }
 
 /// Curves that belong together: the profiles of a hull, the rulings of a

@@ -3,6 +3,7 @@
 //! | what | entity |
 //! |---|---|
 //! | surface | 128, rational B-spline surface |
+//! | part of a surface | 144, trimmed; its bound 142 in space and in (u, v), each 102 |
 //! | curve | 126, rational B-spline curve |
 //! | straight line | 110 |
 //! | name | 406 form 15, attached to each |
@@ -14,11 +15,11 @@
 
 mod records;
 
-use super::brep::{Path, SheetModel};
+use super::brep::{Path, Sheet, SheetModel, bounds};
 use super::length_unit::LengthUnit;
 use crate::geometry::{Axis, BSplineCurve, BSplineSurface, BoundingBox};
 use nalgebra::Point3;
-use records::{Field, Records};
+use records::{Field, Records, Role};
 
 /// Any date will do but none may be missing: 1996, when IGES 5.3 was printed.
 const DATE: &str = "19960101.000000";
@@ -31,7 +32,7 @@ const RESOLUTION: f64 = 1e-7;
 pub fn write(model: &SheetModel) -> String {
     let mut records = Records::default();
     for sheet in &model.sheets {
-        records.add(128, 0, &surface(&sheet.surface), &sheet.name);
+        add_sheet(&mut records, sheet);
     }
     for wire in model.wires.iter().flat_map(|g| &g.wires) {
         match &wire.path {
@@ -44,6 +45,44 @@ pub fn write(model: &SheetModel) -> String {
     }
     let start = format!("{}: {}", model.title, model.description);
     records.file(&start, &global(model))
+}
+
+/// A surface, or the part of it that is meant.
+fn add_sheet(records: &mut Records, sheet: &Sheet) {
+    let bounds = bounds(sheet);
+    let whole = surface(&sheet.surface);
+    if bounds.is_empty() {
+        return records.add(128, 0, &whole, &sheet.name);
+    }
+    let whole = records.entity(128, 0, &whole, Role::Part);
+    let mut composite = |role: Role, curves: Vec<&BSplineCurve>| {
+        let parts = curves
+            .into_iter()
+            .map(|c| records.entity(126, 0, &curve(c), role));
+        let parts: Vec<usize> = parts.collect();
+        let list = std::iter::once(parts.len()).chain(parts).map(Field::count);
+        records.entity(102, 0, &list.collect::<Vec<_>>(), role)
+    };
+    let plane = composite(Role::Parametric, bounds.iter().map(|b| &b.under).collect());
+    let space = composite(Role::Part, bounds.iter().map(|b| &b.curve).collect());
+    // Made in no particular way; both curves are as good.
+    let [made, preferred] = [0, 3].map(Field::Integer);
+    let fields = [
+        made,
+        Field::count(whole),
+        Field::count(plane),
+        Field::count(space),
+        preferred,
+    ];
+    let bound = records.entity(142, 0, &fields, Role::Part);
+    // The outer bound is not that of the surface; no holes.
+    let fields = [
+        Field::count(whole),
+        Field::Integer(1),
+        Field::Integer(0),
+        Field::count(bound),
+    ];
+    records.add(144, 0, &fields, &sheet.name);
 }
 
 /// The global section's fields, 3 to 26; the first two, the delimiters, are

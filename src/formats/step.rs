@@ -5,6 +5,7 @@
 //! |---|---|
 //! | surface | `B_SPLINE_SURFACE_WITH_KNOTS`, rational where it has weights |
 //! | edge | `EDGE_CURVE` over a B-spline curve, one for both neighbours |
+//! | outline of a part | the same over a `SURFACE_CURVE`, in space and in (u, v) |
 //! | shell | `OPEN_SHELL`s of a `SHELL_BASED_SURFACE_MODEL` |
 //! | curves | a `GEOMETRIC_CURVE_SET` a group, in a representation of their own |
 //! | unit | that of the model; foot and inch as `CONVERSION_BASED_UNIT` |

@@ -1,6 +1,7 @@
 //! Faces out of surfaces, sewn along shared boundaries.
 //!
-//! 1. A surface is cut where it has a knot as multiple as its degree: there it
+//! 0. A part of a surface is a face whose sides are its outline.
+//! 1. A whole surface is cut where it has a knot as multiple as its degree: there it
 //!    may have a crease, and a fan begins, whose side on the apex is a point.
 //! 2. Corners within [`WELD`] of the model's size become one vertex.
 //! 3. A side is cut at every vertex that lies on it, so that the joins of one
@@ -15,7 +16,7 @@
 //!
 //! Limits: an edge joins two faces; a third brings an edge of its own.
 
-use super::Sheet;
+use super::{Bound, Sheet, bounds};
 use crate::geometry::{Axis, BSplineCurve, BSplineSurface, BoundingBox, CurveIndex};
 use nalgebra::Point3;
 use std::collections::{BTreeMap, VecDeque};
@@ -35,6 +36,9 @@ pub(in crate::formats) struct Edge {
     pub ends: [usize; 2],
     /// The curve from start to end.
     pub curve: BSplineCurve,
+    /// The same in the parameters of the face that it is an outline of, as x and
+    /// y; none along the sides of a surface, nor along a straight line.
+    pub under: Option<BSplineCurve>,
 }
 
 /// How a loop runs through an edge.
@@ -46,7 +50,7 @@ pub(in crate::formats) struct EdgeUse {
     pub forward: bool,
 }
 
-/// A face: a whole surface with its outer loop.
+/// A face: a surface, or a part of it, with its outer loop.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::formats) struct Face {
     /// Name of the surface that it is cut from.
@@ -80,29 +84,21 @@ pub(in crate::formats) fn sew(sheets: &[Sheet]) -> Sewn {
     let points = sheets.iter().flat_map(|s| s.surface.control_points());
     let size = BoundingBox::of(points).map_or(0.0, |b| b.longest_side());
     let weld = WELD * size;
-    let patches: Vec<(&str, BSplineSurface)> = sheets
-        .iter()
-        .flat_map(|s| {
-            patches(&s.surface)
-                .into_iter()
-                .map(|p| (s.name.as_str(), p))
-        })
-        .collect();
+    let parts: Vec<Part> = sheets.iter().flat_map(|s| parts(s, weld)).collect();
     let mut corners = Vertices::new(weld);
-    let sides: Vec<Vec<BSplineCurve>> = patches.iter().map(|(_, p)| sides(p, weld)).collect();
-    for side in sides.iter().flatten() {
-        corners.index_of(&side.start());
-        corners.index_of(&side.end());
+    for side in parts.iter().flat_map(|p| &p.sides) {
+        corners.index_of(&side.curve.start());
+        corners.index_of(&side.curve.end());
     }
     let mut edges = Edges::default();
     let mut faces = Vec::new();
-    for ((name, surface), sides) in patches.into_iter().zip(&sides) {
-        let pieces = sides.iter().flat_map(|s| corners.pieces(s));
+    for part in parts {
+        let pieces = part.sides.iter().flat_map(|s| corners.pieces(s));
         let bound: Vec<EdgeUse> = pieces.map(|piece| edges.take(piece, weld)).collect();
         if !bound.is_empty() {
             faces.push(Face {
-                name: name.to_owned(),
-                surface,
+                name: part.name.to_owned(),
+                surface: part.surface,
                 bound,
                 same_sense: true,
             });
@@ -116,6 +112,46 @@ pub(in crate::formats) fn sew(sheets: &[Sheet]) -> Sewn {
         shells,
         weld,
     }
+}
+
+/// What becomes one face.
+struct Part<'a> {
+    name: &'a str,
+    surface: BSplineSurface,
+    /// In the order and direction of the loop round `du × dv`.
+    sides: Vec<Side>,
+}
+
+/// A side of a face: in space and, of an outline, in the surface's parameters.
+struct Side {
+    curve: BSplineCurve,
+    under: Option<BSplineCurve>,
+}
+
+/// The part of a surface that is meant, or the whole, cut where it has creases.
+fn parts(sheet: &Sheet, weld: f64) -> Vec<Part<'_>> {
+    let name = sheet.name.as_str();
+    let bounds = bounds(sheet);
+    if !bounds.is_empty() {
+        let seen = |b: &Bound| b.curve.bounding_box().diagonal() > weld;
+        let side = |b: Bound| Side {
+            under: (b.curve.degree() > 1).then_some(b.under),
+            curve: b.curve,
+        };
+        return vec![Part {
+            name,
+            surface: sheet.surface.clone(),
+            sides: bounds.into_iter().filter(seen).map(side).collect(),
+        }];
+    }
+    let whole = |surface: BSplineSurface| Part {
+        name,
+        sides: (sides(&surface, weld).into_iter())
+            .map(|curve| Side { curve, under: None })
+            .collect(),
+        surface,
+    };
+    patches(&sheet.surface).into_iter().map(whole).collect()
 }
 
 /// A surface cut at the knots where it may have a crease, along u, then v.
@@ -219,25 +255,29 @@ impl Vertices {
     }
 
     /// A side cut at the vertices on it, with the vertices of each piece.
-    fn pieces(&mut self, side: &BSplineCurve) -> Vec<Edge> {
-        let start = self.index_of(&side.start());
-        let end = self.index_of(&side.end());
-        let mut rest = side.clone();
+    fn pieces(&mut self, side: &Side) -> Vec<Edge> {
+        let start = self.index_of(&side.curve.start());
+        let end = self.index_of(&side.curve.end());
+        let mut rest = side.curve.clone();
+        let mut under = side.under.clone();
         let mut from = start;
         let mut pieces = Vec::new();
-        for (u, vertex) in self.on_side(side, [start, end]) {
-            if let Ok((before, after)) = rest.split(u) {
+        for (u, vertex) in self.on_side(&side.curve, [start, end]) {
+            let below = under.as_ref().map(|curve| curve.split(u)).transpose();
+            if let (Ok((before, after)), Ok(below)) = (rest.split(u), below) {
+                let (first, second) = below.unzip();
                 pieces.push(Edge {
                     ends: [from, vertex],
                     curve: before,
+                    under: first,
                 });
-                rest = after;
-                from = vertex;
+                (rest, under, from) = (after, second, vertex);
             }
         }
         pieces.push(Edge {
             ends: [from, end],
             curve: rest,
+            under,
         });
         pieces
     }

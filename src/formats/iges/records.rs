@@ -71,19 +71,43 @@ pub(super) struct Records {
     parameter_lines: usize,
 }
 
+/// What an entity is to others: digits 3 to 6 of its status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// It stands for itself.
+    Free,
+    /// It is a part of another.
+    Part,
+    /// It is a part of another and a curve in the parameters of a surface.
+    Parametric,
+    /// It is a property of another and no geometry of its own.
+    Property,
+}
+
+impl Role {
+    fn status(self) -> &'static str {
+        match self {
+            Role::Free => "00000000",
+            Role::Part => "00010000",
+            Role::Parametric => "00010500",
+            Role::Property => "00010300",
+        }
+    }
+}
+
 impl Records {
     /// Adds an entity and, before it, the property with its name.
     pub fn add(&mut self, kind: u32, form: u32, fields: &[Field], name: &str) {
         let property = [Field::Integer(1), Field::text(name)];
-        let name = self.entity(406, 15, &property);
+        let name = self.entity(406, 15, &property, Role::Property);
         let mut fields = fields.to_vec();
         // No associativities, one property.
         fields.extend([Field::Integer(0), Field::Integer(1), Field::count(name)]);
-        self.entity(kind, form, &fields);
+        self.entity(kind, form, &fields, Role::Free);
     }
 
     /// Adds an entity and tells its line in the directory.
-    fn entity(&mut self, kind: u32, form: u32, fields: &[Field]) -> usize {
+    pub fn entity(&mut self, kind: u32, form: u32, fields: &[Field], role: Role) -> usize {
         let pointer = self.directory_lines + 1;
         let first = self.parameter_lines + 1;
         let mut text = kind.to_string();
@@ -97,9 +121,7 @@ impl Records {
             let _ = writeln!(self.parameters, "{line:<64} {pointer:>7}P{number:>7}");
         }
         let lines = self.parameter_lines + 1 - first;
-        // A property is subordinate to what it names (status 0001xxxx) and no
-        // geometry of its own.
-        let status = if kind == 406 { "00010300" } else { "00000000" };
+        let status = role.status();
         let second = pointer + 1;
         let _ = writeln!(
             self.directory,

@@ -15,6 +15,7 @@ fn model() -> SheetModel {
         sheets: vec![Sheet {
             name: "deck – chine".into(),
             surface: surface.unwrap(),
+            outline: None,
         }],
         wires: vec![WireGroup {
             name: "rulings".into(),
@@ -71,4 +72,32 @@ fn the_directory_points_to_the_parameters() {
         kinds.push(kind.to_owned());
     }
     assert_eq!(kinds, ["406", "128", "406", "110"]);
+}
+
+#[test]
+fn a_part_of_a_surface_is_a_trimmed_one() {
+    let mut part = model();
+    let outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.5], [0.0, 1.0]];
+    part.sheets[0].outline = Some(outline.iter().map(|p| (*p).into()).collect());
+    let text = write(&part);
+    let kinds: Vec<&str> = (text.lines())
+        .filter(|l| l.as_bytes()[72] == b'P' && l.as_bytes()[0].is_ascii_digit())
+        .filter_map(|l| l.split(',').next())
+        .collect();
+    let count = |kind: &str| kinds.iter().filter(|k| **k == kind).count();
+    // Three sides lie on those of the surface, one does not: four curves twice.
+    assert_eq!(count("128"), 1);
+    assert_eq!(count("126"), 8);
+    assert_eq!((count("102"), count("142"), count("144")), (2, 1, 1));
+    // Parts are subordinate; the face alone has a name.
+    let directory = |kind: &str, status: &str| {
+        (text.lines())
+            .filter(|l| l.as_bytes()[72] == b'D' && l[..8].trim() == kind)
+            .filter(|l| &l[64..72] == status)
+            .count()
+    };
+    assert_eq!(directory("126", "00010500"), 4);
+    assert_eq!(directory("126", "00010000"), 4);
+    assert_eq!(directory("128", "00010000"), 1);
+    assert_eq!(directory("144", "00000000"), 1);
 }

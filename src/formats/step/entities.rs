@@ -12,6 +12,8 @@ use std::fmt::{Arguments, Write as _};
 pub(super) struct Entities {
     text: String,
     count: usize,
+    /// The context of curves in the parameters of a surface.
+    parameters: Option<usize>,
 }
 
 impl Entities {
@@ -176,8 +178,25 @@ impl Entities {
                 self.add(format_args!("VERTEX_POINT('',#{point})"))
             })
             .collect();
-        let edges: Vec<usize> = sewn.edges.iter().map(|e| self.edge(e, &vertices)).collect();
-        let faces: Vec<usize> = sewn.faces.iter().map(|f| self.face(f, &edges)).collect();
+        let surfaces: Vec<usize> = (sewn.faces.iter())
+            .map(|f| self.surface(&f.name, &f.surface))
+            .collect();
+        let mut grounds = vec![None; sewn.edges.len()];
+        for (face, surface) in sewn.faces.iter().zip(&surfaces) {
+            for user in &face.bound {
+                // An edge between two faces is told in space alone.
+                grounds[user.edge] = match grounds[user.edge] {
+                    None => Some(Some(*surface)),
+                    Some(_) => Some(None),
+                };
+            }
+        }
+        let edges: Vec<usize> = (sewn.edges.iter().zip(grounds))
+            .map(|(e, ground)| self.edge(e, &vertices, ground.flatten()))
+            .collect();
+        let faces: Vec<usize> = (sewn.faces.iter().zip(surfaces))
+            .map(|(f, surface)| self.face(f, surface, &edges))
+            .collect();
         let shells: Vec<String> = (sewn.shells.iter())
             .map(|shell| {
                 let list = bracketed(shell.iter().map(|i| format!("#{}", faces[*i])));
@@ -187,14 +206,44 @@ impl Entities {
         bracketed(shells.into_iter())
     }
 
-    fn edge(&mut self, edge: &Edge, vertices: &[usize]) -> usize {
-        let curve = self.curve("", &edge.curve);
+    fn edge(&mut self, edge: &Edge, vertices: &[usize], ground: Option<usize>) -> usize {
+        let mut curve = self.curve("", &edge.curve);
+        if let (Some(under), Some(ground)) = (&edge.under, ground) {
+            let under = self.curve_in_parameters(under, ground);
+            curve = self.add(format_args!(
+                "SURFACE_CURVE('',#{curve},(#{under}),.CURVE_3D.)"
+            ));
+        }
         let [start, end] = edge.ends.map(|i| vertices[i]);
         self.add(format_args!("EDGE_CURVE('',#{start},#{end},#{curve},.T.)"))
     }
 
-    fn face(&mut self, face: &Face, edges: &[usize]) -> usize {
-        let surface = self.surface(&face.name, &face.surface);
+    /// A polynomial curve in the parameters of a surface.
+    fn curve_in_parameters(&mut self, curve: &BSplineCurve, surface: usize) -> usize {
+        let context = match self.parameters {
+            Some(context) => context,
+            None => self.add(format_args!(
+                "(GEOMETRIC_REPRESENTATION_CONTEXT(2)PARAMETRIC_REPRESENTATION_CONTEXT()\
+                 REPRESENTATION_CONTEXT('parameters',''))"
+            )),
+        };
+        self.parameters = Some(context);
+        let poles: Vec<usize> = (curve.control_points().iter())
+            .map(|p| self.add(format_args!("CARTESIAN_POINT('',{})", reals(&[p.x, p.y]))))
+            .collect();
+        let poles = bracketed(poles.iter().map(|id| format!("#{id}")));
+        let (counts, values) = knots(curve.knot_vector());
+        let id = self.add(format_args!(
+            "B_SPLINE_CURVE_WITH_KNOTS('',{},{poles},.UNSPECIFIED.,.F.,.U.,{counts},{values},.UNSPECIFIED.)",
+            curve.degree()
+        ));
+        let definition = self.add(format_args!(
+            "DEFINITIONAL_REPRESENTATION('',(#{id}),#{context})"
+        ));
+        self.add(format_args!("PCURVE('',#{surface},#{definition})"))
+    }
+
+    fn face(&mut self, face: &Face, surface: usize, edges: &[usize]) -> usize {
         let uses: Vec<String> = (face.bound.iter())
             .map(|user| {
                 let id = self.add(format_args!(

@@ -16,6 +16,7 @@ fn model(units: LengthUnit) -> SheetModel {
         units,
         sheets: vec![Sheet {
             name: "deck – chine".into(),
+            outline: None,
             surface,
         }],
         wires: vec![WireGroup {
@@ -65,4 +66,39 @@ fn units_are_said() {
     ] {
         assert!(write(&model(units)).contains(word), "{units:?}");
     }
+}
+
+#[test]
+fn an_outline_is_told_in_space_and_in_parameters() {
+    let knots = vec![0.0, 0.0, 1.0, 1.0];
+    let points = [
+        [0.0, 0.0, 0.0],
+        [0.0, 1.0, 1.0],
+        [2.0, 0.0, 1.0],
+        [2.0, 1.0, 0.0],
+    ];
+    let points = points.map(|[x, y, z]| Point3::new(x, y, z)).to_vec();
+    let outline = [[0.0, 0.0], [1.0, 0.1], [1.0, 0.5], [0.5, 0.6], [0.0, 1.0]];
+    let model = SheetModel {
+        title: "part".into(),
+        description: String::new(),
+        units: LengthUnit::Metre,
+        sheets: vec![Sheet {
+            name: "part".into(),
+            outline: Some(outline.iter().map(|p| (*p).into()).collect()),
+            surface: BSplineSurface::new([1, 1], [knots.clone(), knots], points, None).unwrap(),
+        }],
+        wires: Vec::new(),
+    };
+    let text = write(&model);
+    let count = |word: &str| text.matches(word).count();
+    assert_eq!(count("=ADVANCED_FACE("), 1);
+    assert_eq!(count("=EDGE_CURVE("), 4);
+    // Two rulings are straight; the two other sides are not.
+    assert_eq!((count("=SURFACE_CURVE("), count("=PCURVE(")), (2, 2));
+    assert_eq!(count("PARAMETRIC_REPRESENTATION_CONTEXT()"), 1);
+    // The surface is read back whole.
+    let read = crate::formats::step_in::read(text.as_bytes()).unwrap();
+    assert_eq!(read.surfaces[0].surface, model.sheets[0].surface);
+    assert!(read.surfaces[0].is_trimmed);
 }

@@ -28,6 +28,7 @@ mod pieces;
 mod refine;
 mod rows;
 mod surface;
+mod surface_curves;
 mod surface_forms;
 
 pub use basis::{BasisJet, basis_jet};

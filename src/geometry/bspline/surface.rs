@@ -200,6 +200,20 @@ impl BSplineSurface {
         )
     }
 
+    /// The weight at (u, v), which divides what the rational surface is made
+    /// of; 1 for a polynomial one.
+    #[must_use]
+    pub fn weight_at(&self, u: f64, v: f64) -> f64 {
+        let Some(weights) = &self.weights else {
+            return 1.0;
+        };
+        let [u, v] = self.clamp(u, v);
+        let [ku, kv] = &self.knots;
+        let spans = [span(self.degrees[0], ku, u), span(self.degrees[1], kv, v)];
+        let [w, ..] = self.tensor::<1>(spans, [u, v], |k| SVector::from([weights[k]]));
+        w.x
+    }
+
     /// The unit normal at (u, v); `None` where the surface is singular.
     #[must_use]
     pub fn normal(&self, u: f64, v: f64) -> Option<Vector3<f64>> {

@@ -27,6 +27,7 @@ pub(super) fn sheets(surfaces: &[Surface]) -> Result<Vec<Sheet>, ApiError> {
         Ok(Sheet {
             name: s.name.clone(),
             surface: s.tensor()?,
+            outline: None,
         })
     };
     surfaces.iter().map(sheet).collect()

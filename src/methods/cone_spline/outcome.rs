@@ -138,6 +138,8 @@ pub struct Patch {
     pub trims: [Trim; 2],
     /// Its whole outline in (s, λ), closed (the first point is not repeated).
     pub outline: Vec<Point2<f64>>,
+    /// The same in the parameters (u, v) of its surface, point for point.
+    pub outline_uv: Vec<Point2<f64>>,
     /// Its flat shape on its own.
     pub flat: FlatSector,
     /// Lines to mark for the rolls, in the coordinates of the strip's flat

@@ -11,6 +11,7 @@ fn sheet(surface: BSplineSurface) -> Sheet {
     Sheet {
         name: "sheet".into(),
         surface,
+        outline: None,
     }
 }
 
@@ -164,4 +165,65 @@ fn a_fan_of_no_width_has_no_face() {
     assert_eq!((sewn.edges.len(), sewn.vertices.len()), (7, 6));
     assert_oriented(&sewn);
     assert_closed(&sewn);
+}
+
+/// Two halves of a quarter of a cylinder, of which only a part with a bent side
+/// is meant.
+fn trimmed_pair() -> Vec<Sheet> {
+    let h = std::f64::consts::FRAC_PI_8;
+    let half = |from: f64| {
+        let at = |k: f64, far: f64, z: f64| {
+            let turn = from + k * h;
+            Point3::new(far * turn.cos(), far * turn.sin(), z)
+        };
+        let far = 1.0 / h.cos();
+        let rows = [(0.0, 1.0), (1.0, far), (2.0, 1.0)];
+        let points = rows
+            .iter()
+            .flat_map(|(k, far)| [0.0, 1.0].map(|z| at(*k, *far, z)));
+        let weights = [1.0, 1.0, h.cos(), h.cos(), 1.0, 1.0].to_vec();
+        let knots = [vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]];
+        BSplineSurface::new([2, 1], knots, points.collect(), Some(weights)).unwrap()
+    };
+    let outline = |list: &[[f64; 2]]| Some(list.iter().map(|p| (*p).into()).collect());
+    let first = [[0.0, 0.0], [0.4, 0.1], [1.0, 0.2], [1.0, 0.9], [0.0, 1.0]];
+    let second = [[0.0, 0.2], [1.0, 0.0], [1.0, 1.0], [0.5, 0.95], [0.0, 0.9]];
+    vec![
+        Sheet {
+            outline: outline(&first),
+            ..sheet(half(0.0))
+        },
+        Sheet {
+            outline: outline(&second),
+            ..sheet(half(2.0 * h))
+        },
+    ]
+}
+
+#[test]
+fn parts_of_surfaces_are_faces_with_their_outlines() {
+    let sheets = trimmed_pair();
+    let sewn = sew(&sheets);
+    assert_eq!((sewn.faces.len(), sewn.shells.len()), (2, 1));
+    // Four sides each, the ruling between them once.
+    assert_eq!((sewn.edges.len(), sewn.vertices.len()), (7, 6));
+    assert_oriented(&sewn);
+    assert_closed(&sewn);
+    let bent = sewn.edges.iter().filter(|e| e.under.is_some());
+    assert_eq!(bent.clone().count(), 4);
+    for (face, sheet) in sewn.faces.iter().zip(&sheets) {
+        assert_eq!(face.surface, sheet.surface);
+        for user in &face.bound {
+            let edge = &sewn.edges[user.edge];
+            let Some(under) = &edge.under else { continue };
+            let [from, to] = edge.curve.domain();
+            assert_eq!(under.domain(), [from, to]);
+            for k in 0..=10 {
+                let t = from + (to - from) * f64::from(k) / 10.0;
+                let place = under.point(t);
+                let off = face.surface.point(place.x, place.y) - edge.curve.point(t);
+                assert!(off.norm() < 1e-14, "{off}");
+            }
+        }
+    }
 }

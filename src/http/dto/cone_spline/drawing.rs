@@ -40,11 +40,17 @@ impl Document for ConeSplineResult {
 
     fn model(&self) -> Result<SheetModel, ApiError> {
         let first = self.summary.first().map_or("", String::as_str);
+        let mut sheets = cad::sheets(&self.surfaces)?;
+        for (sheet, patch) in sheets.iter_mut().zip(&self.method_specific.patches) {
+            let outline: Vec<Point2<f64>> = patch.outline_uv.iter().map(|p| (*p).into()).collect();
+            // Results of earlier versions have none.
+            sheet.outline = (!outline.is_empty()).then_some(outline);
+        }
         Ok(SheetModel {
             title: self.title(),
             description: format!("{}: {first}", self.verdict),
             units: self.units.into(),
-            sheets: cad::sheets(&self.surfaces)?,
+            sheets,
             wires: vec![cad::wires("rulings and sides", &self.curves)?],
         })
     }

@@ -51,6 +51,10 @@ pub struct ConePatch {
     pub trims: [ConeTrim; 2],
     /// Its whole outline in (s, λ); the first point is not repeated.
     pub outline: Vec<FlatPoint>,
+    /// The same in the parameters (u, v) of its surface, point for point: the
+    /// loop that trims it.
+    #[serde(default)]
+    pub outline_uv: Vec<FlatPoint>,
     /// Its flat shape on its own.
     pub flat: ConeFlat,
     /// Lines to mark for the rolls in the flat pattern, from side 0 to side 1.
@@ -155,6 +159,7 @@ impl From<&Patch> for ConePatch {
             rulings: p.rulings.into(),
             trims: p.trims.each_ref().map(Into::into),
             outline: p.outline.iter().map(|p| (*p).into()).collect(),
+            outline_uv: p.outline_uv.iter().map(|p| (*p).into()).collect(),
             flat: (&p.flat).into(),
             bend_lines: p.bend_lines.iter().map(|l| l.map(Into::into)).collect(),
             area: p.area,

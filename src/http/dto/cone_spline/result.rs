@@ -23,7 +23,7 @@ result_of_a_method!(
     about = "The result of a `cone_spline` job. Lengths in `units`.",
     verdict = "Whether every limit that was asked is kept.",
     summary = "The verdict, then what a loftsman should know.",
-    surfaces = "The patches, exact: degree `[2, 1]`, rational, u along the arc, v along the\nrulings; each reaches a little past its outline. Control points `[u][v]`.",
+    surfaces = "The patches, exact: degree `[2, 1]`, rational, u along the arc, v along the\nrulings; `outline_uv` of its patch bounds the part that is meant. Control points\n`[u][v]`.",
     curves = "The rulings where patches meet and at the ends (role `ruling`), and the\npatches' edges along the strip's sides (role `side`, straight pieces).",
     diagnostics = "All figures, measured on the patches that are returned.",
 );

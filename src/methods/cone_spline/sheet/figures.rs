@@ -58,6 +58,9 @@ pub(super) fn patch(
             .collect(),
         surface: surface::exact(&link.frame, link.strain, link.length, lambda)?,
         area: area(link.strain.g, &outline),
+        outline_uv: (outline.iter())
+            .map(|p| Point2::new(surface::parameter(link.strain, link.length, p.x), p.y))
+            .collect(),
         grid: grid::of(link, &outline),
         outline,
         vertices: fit.vertices,

@@ -27,9 +27,7 @@ pub(super) fn exact(
     length: f64,
     [low, high]: [f64; 2],
 ) -> Result<BSplineSurface, SplineError> {
-    // A quarter turn a span keeps all weights above 0.7.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let spans = (strain.rate() * length / FRAC_PI_2).ceil().max(1.0) as usize;
+    let spans = spans(strain, length);
     let step = length / spans as f64;
     let mut knots = vec![0.0; 3];
     let mut points: Vec<Point3<f64>> = [low, high].map(|l| frame.at(l)).to_vec();
@@ -54,4 +52,31 @@ pub(super) fn exact(
     }
     let along = vec![low, low, high, high];
     BSplineSurface::new([2, 1], [knots, along], points, Some(weights))
+}
+
+/// Spans of a patch: a quarter turn each keeps all weights above 0.7.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn spans(strain: Strain, length: f64) -> usize {
+    (strain.rate() * length / FRAC_PI_2).ceil().max(1.0) as usize
+}
+
+/// The parameter u of an arc length on that surface.
+///
+/// On a rational quadratic arc with the weights 1, cos h, 1 the chords a and b to
+/// its ends are as t : 1 − t, and a chord over the arc x is x sinc(W x/2).
+pub(super) fn parameter(strain: Strain, length: f64, arc: f64) -> f64 {
+    /// Nearer to an end than this share of the length a place is there.
+    const ROUNDING: f64 = 1e-12;
+    let spans = spans(strain, length);
+    let step = length / spans as f64;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // Saturates.
+    let span = ((arc / step) as usize).min(spans - 1);
+    let start = step * span as f64;
+    let chord = |x: f64| x * sinc(0.5 * strain.rate() * x);
+    let [a, b] = [arc - start, start + step - arc].map(chord);
+    match arc / length {
+        share if share < ROUNDING => 0.0,
+        share if share > 1.0 - ROUNDING => length,
+        _ => start + step * a / (a + b),
+    }
 }

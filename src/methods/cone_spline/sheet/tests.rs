@@ -132,6 +132,18 @@ fn surfaces_outlines_and_rulings_lie_on_what_the_figures_say() {
         for point in patch.trims.iter().flat_map(|t| &t.points) {
             assert!(off(patch, point) < 1e-13);
         }
+        assert_eq!(patch.outline.len(), patch.outline_uv.len());
+        let mut found = 0;
+        for trim in &patch.trims {
+            for (point, place) in trim.points.iter().zip(&trim.parameters) {
+                let same = (patch.outline.iter()).position(|p| (p - place).norm() < 1e-14);
+                let Some(i) = same else { continue };
+                let [u, v] = [patch.outline_uv[i].x, patch.outline_uv[i].y];
+                assert!((patch.surface.point(u, v) - point).norm() < 1e-13);
+                found += 1;
+            }
+        }
+        assert!(found >= 4, "{found}");
         let ends = patch.rulings.map(|i| sheets.rulings[i]);
         let rows = patch.surface.control_points();
         let n = rows.len();
