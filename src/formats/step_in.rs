@@ -5,6 +5,7 @@
 //! that is trimmed within its surface is marked. Faces on planes, cylinders and
 //! other elementary surfaces are named and left out.
 
+mod clamp;
 mod error;
 mod part21;
 mod surfaces;

@@ -1,5 +1,6 @@
 //! From entities to surfaces: ISO 10303-42, 10303-41 for the unit.
 
+use super::clamp::clamped;
 use super::error::{StepFault, StepReadError};
 use super::part21::{Entity, Record, Value};
 use super::{StepReading, StepSurface};
@@ -186,7 +187,10 @@ impl<'a> File<'a> {
         };
         // Weights that are all one are those of a polynomial surface.
         let weights = weights.filter(|w| w.iter().any(|w| *w != 1.0) || w.len() != poles.len());
-        let spline = BSplineSurface::new(degrees, knots, poles, weights);
+        let spline = match clamped(degrees, &knots, &poles, weights.as_deref()) {
+            Some(c) => BSplineSurface::new(degrees, c.knots, c.poles, c.weights),
+            None => BSplineSurface::new(degrees, knots, poles, weights),
+        };
         spline.map_err(|e| StepReadError::new(entity.line, "", StepFault::Spline(e)))
     }
 
@@ -202,8 +206,8 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Whether a face is only a part of its surface: it has holes, or a corner
-    /// that is on none of the four sides.
+    /// Whether a face is only a part of its surface: it has holes, a corner
+    /// that is on none of the four sides, or none where the surface has one.
     fn is_trimmed(
         &self,
         number: u64,
@@ -224,7 +228,18 @@ impl<'a> File<'a> {
             let nearest = sides.iter().map(|side| side.closest(p).distance);
             nearest.fold(f64::INFINITY, f64::min) > tolerance
         };
-        Ok(corners.iter().any(is_inside))
+        let [n, m] = surface.counts();
+        let poles = surface.control_points();
+        let is_missed = |k: usize| {
+            let distances = corners.iter().map(|c| (c - poles[k]).norm());
+            distances.fold(f64::INFINITY, f64::min) > tolerance
+        };
+        // Of a face without corners that could be followed nothing is known.
+        let misses = !corners.is_empty()
+            && [0, m - 1, (n - 1) * m, n * m - 1]
+                .into_iter()
+                .any(is_missed);
+        Ok(misses || corners.iter().any(is_inside))
     }
 
     /// The ends of all edges of some bounds, as far as they can be followed.

@@ -30,8 +30,8 @@ GEOMETRIC_REPRESENTATION_ITEM()RATIONAL_B_SPLINE_SURFACE(((1.,1.),(0.70710678118
 #30=VERTEX_POINT('',#11);\r
 #31=VERTEX_POINT('',#12);\r
 #32=EDGE_CURVE('',#30,#31,$,.T.);\r
-#33=ORIENTED_EDGE('',*,*,#32,.T.);\r
-#34=EDGE_LOOP('',(#33));\r
+#33=ORIENTED_EDGE('',*,*,#32,.T.);#36=VERTEX_POINT('',#15);#37=VERTEX_POINT('',#16);\r
+#34=EDGE_LOOP('',(#33,#39));#38=EDGE_CURVE('',#36,#37,$,.T.);#39=ORIENTED_EDGE('',*,*,#38,.T.);\r
 #35=FACE_OUTER_BOUND('',#34,.T.);\r
 #40=ADVANCED_FACE('',(#35),#20,.T.);\r
 #41=PLANE('',$);\r
@@ -65,6 +65,13 @@ fn a_corner_within_the_surface_trims_it() {
         "#17=CARTESIAN_POINT('',(0.7071067811865475,0.7071067811865475,1.));\r\n#30=VERTEX",
     );
     assert!(read(inside.as_bytes()).expect("a reading").surfaces[0].is_trimmed);
+    // One that lies on a side, where the surface has its corner elsewhere.
+    let short = FOREIGN.replace("#31=VERTEX_POINT('',#12)", "#31=VERTEX_POINT('',#17)");
+    let short = short.replace(
+        "#30=VERTEX",
+        "#17=CARTESIAN_POINT('',(1.,0.,1.5));\r\n#30=VERTEX",
+    );
+    assert!(read(short.as_bytes()).expect("a reading").surfaces[0].is_trimmed);
 }
 
 #[test]
@@ -91,6 +98,7 @@ fn our_own_files_come_back_to_the_bit() {
         sheets: vec![Sheet {
             name: "deck – 1".into(),
             surface: surface.clone(),
+            outline: None,
         }],
         wires: Vec::new(),
     };
@@ -145,5 +153,79 @@ fn faults_are_told_with_their_lines() {
     // Cut anywhere it is refused, and nothing panics.
     for end in 0..FOREIGN.len() - 20 {
         assert!(read(&FOREIGN.as_bytes()[..end]).is_err(), "{end}");
+    }
+}
+
+/// A closed cubic tube, its knots going on beyond its domain: a ring of six
+/// rows of poles, the first three again, rational if asked.
+fn tube(weighted: bool) -> (String, impl Fn(usize, usize) -> (Point3<f64>, f64)) {
+    let pole = move |i: usize, j: usize| {
+        let turn = std::f64::consts::FRAC_PI_3 * (i % 6) as f64;
+        let weight = if weighted {
+            1.0 + 0.1 * (i % 6) as f64
+        } else {
+            1.0
+        };
+        let radius = 1.0 + 0.25 * (i % 6) as f64;
+        let place = Point3::new(radius * turn.cos(), radius * turn.sin(), j as f64);
+        (place, weight)
+    };
+    let mut text = FOREIGN.split("#11=").next().unwrap_or_default().to_owned();
+    let (mut rows, mut weights) = (Vec::new(), Vec::new());
+    for i in 0..9 {
+        let (mut row, mut line) = (Vec::new(), Vec::new());
+        for j in 0..2 {
+            let (p, w) = pole(i, j);
+            let number = 100 + 2 * i + j;
+            text += &format!(
+                "#{number}=CARTESIAN_POINT('',({:?},{:?},{:?}));\n",
+                p.x, p.y, p.z
+            );
+            row.push(format!("#{number}"));
+            line.push(format!("{w:?}"));
+        }
+        rows.push(format!("({})", row.join(",")));
+        weights.push(format!("({})", line.join(",")));
+    }
+    let ones = ["1"; 13].join(",");
+    let knots: Vec<String> = (0..13).map(|k| format!("{k}.")).collect();
+    let (rows, weights, knots) = (rows.join(","), weights.join(","), knots.join(","));
+    let rational = match weighted {
+        true => format!("RATIONAL_B_SPLINE_SURFACE(({weights}))"),
+        false => String::new(),
+    };
+    text += &format!(
+        "#20=(BOUNDED_SURFACE()B_SPLINE_SURFACE(3,1,({rows}),.UNSPECIFIED.,.T.,.F.,.U.)\
+         B_SPLINE_SURFACE_WITH_KNOTS(({ones}),(2,2),({knots}),(0.,1.),.UNSPECIFIED.)\
+         GEOMETRIC_REPRESENTATION_ITEM(){rational}REPRESENTATION_ITEM('tube')SURFACE());\n\
+         ENDSEC;\nEND-ISO-10303-21;\n"
+    );
+    (text, pole)
+}
+
+#[test]
+fn knots_that_go_on_are_clamped() {
+    for weighted in [false, true] {
+        let (text, pole) = tube(weighted);
+        let read = read(text.as_bytes()).expect("a reading");
+        let surface = &read.surfaces[0].surface;
+        assert_eq!(surface.domain(Axis::U), [3.0, 9.0]);
+        assert_eq!(surface.weights().is_some(), weighted);
+        for k in 0..=6 {
+            // At a knot of a uniform cubic the basis is 1/6, 4/6, 1/6.
+            let three = [(k, 1.0), (k + 1, 4.0), (k + 2, 1.0)];
+            let (mut sum, mut total) = (nalgebra::Vector3::zeros(), 0.0);
+            for (i, share) in three {
+                let (p, w) = pole(i, 1);
+                sum += share * w * p.coords;
+                total += share * w;
+            }
+            let here = surface.point(3.0 + k as f64, 1.0);
+            assert!((here.coords - sum / total).norm() < 1e-14, "{weighted} {k}");
+        }
+        let seam = [3.0, 9.0].map(|u| surface.derivatives_left(u, 0.5));
+        assert!((seam[0].point - seam[1].point).norm() < 1e-14);
+        assert!((seam[0].du - seam[1].du).norm() < 1e-13);
+        assert!((seam[0].duu - seam[1].duu).norm() < 1e-12);
     }
 }
