@@ -198,15 +198,14 @@ fn measure(
     let tolerance = tolerance(request, surfaces);
     let edges = tolerance.map_or_else(Vec::new, |t| joins::edges(surfaces, t));
     let found = tolerance.map_or_else(Vec::new, |t| joins::joins(&edges, t));
-    let is_open = |k: &usize| !found.iter().any(|j| j.edges.contains(k));
+    let open = tolerance.map_or_else(Vec::new, |t| joins::open(&edges, &found, t));
     let mut verification = Verification {
         units: request.units,
         summary: Vec::new(),
         warnings,
         surfaces: figures,
         joins: found.iter().map(|j| join_figures(j, &edges)).collect(),
-        open_edges: (0..edges.len())
-            .filter(is_open)
+        open_edges: (open.into_iter())
             .map(|k| EdgeName {
                 surface: edges[k].surface,
                 edge: edges[k].side.into(),

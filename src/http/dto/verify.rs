@@ -196,7 +196,7 @@ pub enum EdgeWord {
     U1,
 }
 
-/// Where two edges meet.
+/// Where two edges, or parts of them, meet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, ToSchema)]
 pub struct JoinFigures {
     /// The surfaces' indices.
@@ -206,7 +206,7 @@ pub struct JoinFigures {
     pub edges: [EdgeWord; 2],
     /// Length.
     pub length: f64,
-    /// Largest distance of either edge from the other.
+    /// Largest distance of either from the other.
     pub gap: f64,
     /// Largest angle between the surfaces, degrees; 0 where one goes on into the
     /// other.

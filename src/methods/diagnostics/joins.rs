@@ -9,6 +9,10 @@ use std::f64::consts::PI;
 
 /// Places along a join at which its angle is taken.
 const PLACES: usize = 33;
+/// Places between possible ends of a join at which it is tried.
+const TRIED: usize = 5;
+/// What is shorter than so many tolerances is a touch, no join.
+const TOUCH: f64 = 10.0;
 /// Gaps are known to this share of the tolerance.
 const RESOLUTION: f64 = 1e-2;
 
@@ -43,14 +47,16 @@ pub struct Edge<'a> {
     bounds: BoundingBox,
 }
 
-/// Two edges that meet along all of their length.
+/// Two edges that meet, or parts of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Join {
     /// The edges: places in the list.
     pub edges: [usize; 2],
-    /// Length of the first.
+    /// From where to where along each, as lengths from its start.
+    pub stretches: [[f64; 2]; 2],
+    /// Length along the first.
     pub length: f64,
-    /// Largest distance of either edge from the other.
+    /// Largest distance of either from the other.
     pub gap: f64,
     /// Largest angle between the surfaces along it, radians: 0 where one goes
     /// on into the other, however their normals point.
@@ -81,41 +87,118 @@ pub fn edges(surfaces: &[BSplineSurface], tolerance: Tolerance) -> Vec<Edge<'_>>
     edges
 }
 
-/// The joins among edges: pairs no point of which lies further from the other
-/// than `tolerance`. Edges that share a part of their length only are none.
+/// The joins among edges: stretches no point of which lies further from the
+/// other edge than `tolerance`. They end where one of the two edges ends.
 #[must_use]
 pub fn joins(edges: &[Edge<'_>], tolerance: Tolerance) -> Vec<Join> {
-    let resolution = tolerance.scaled(RESOLUTION);
     let mut joins = Vec::new();
     for (i, a) in edges.iter().enumerate() {
         for (j, b) in edges.iter().enumerate().skip(i + 1) {
             if !a.may_meet(b, tolerance.length()) {
                 continue;
             }
-            let there = directed_distance_between(&a.curve, &b.curve, resolution);
-            let back = directed_distance_between(&b.curve, &a.curve, resolution);
-            let gap = there.max.max(back.max);
-            if gap <= tolerance.length() {
-                let (knuckle_max, knuckle_mean) = knuckle(a, b);
-                joins.push(Join {
-                    edges: [i, j],
-                    length: a.lengths.total(),
-                    gap,
-                    knuckle_max,
-                    knuckle_mean,
-                });
+            for stretch in stretches(a, b, tolerance) {
+                joins.extend(measured([(i, a), (j, b)], stretch, tolerance));
             }
         }
     }
     joins
 }
 
+/// Edges that are not joined along some of their length.
+#[must_use]
+pub fn open(edges: &[Edge<'_>], joins: &[Join], tolerance: Tolerance) -> Vec<usize> {
+    let is_open = |k: &usize| {
+        let mut covered: Vec<[f64; 2]> = (joins.iter())
+            .flat_map(|j| j.edges.into_iter().zip(j.stretches))
+            .filter(|(edge, _)| edge == k)
+            .map(|(_, stretch)| stretch)
+            .collect();
+        covered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let end = [edges[*k].lengths.total(); 2];
+        let mut reached = 0.0;
+        covered.into_iter().chain([end]).any(|[from, to]| {
+            let gap = from - reached;
+            reached = f64::max(reached, to);
+            gap > TOUCH * tolerance.length()
+        })
+    };
+    (0..edges.len()).filter(is_open).collect()
+}
+
+/// Stretches of an edge that lie along another, as lengths from its start.
+fn stretches(a: &Edge<'_>, b: &Edge<'_>, tolerance: Tolerance) -> Vec<[f64; 2]> {
+    let near = |p: &Point3<f64>, edge: &Edge<'_>| {
+        let foot = edge.curve.closest(p);
+        (foot.distance <= tolerance.length()).then_some(foot.parameter)
+    };
+    let total = a.lengths.total();
+    let [from, to] = [b.curve.curve().start(), b.curve.curve().end()];
+    let feet = [from, to].into_iter().filter_map(|p| near(&p, a));
+    let mut ends = vec![0.0, total];
+    ends.extend(feet.map(|u| a.lengths.length_at(u)));
+    ends.sort_by(f64::total_cmp);
+    let mut found: Vec<[f64; 2]> = Vec::new();
+    for pair in ends.windows(2) {
+        let inside = |k: usize| {
+            let share = (k as f64 + 0.5) / TRIED as f64;
+            a.point_at(pair[0] + (pair[1] - pair[0]) * share)
+        };
+        if pair[0] == pair[1] || !(0..TRIED).all(|k| near(&inside(k), b).is_some()) {
+            continue;
+        }
+        match found.last_mut() {
+            Some(last) if last[1] == pair[0] => last[1] = pair[1],
+            _ => found.push([pair[0], pair[1]]),
+        }
+    }
+    found.retain(|[from, to]| to - from > TOUCH * tolerance.length());
+    found
+}
+
+/// A stretch of the first of two edges against the second; `None` if they part
+/// somewhere between.
+fn measured(
+    [(i, a), (j, b)]: [(usize, &Edge<'_>); 2],
+    stretch: [f64; 2],
+    tolerance: Tolerance,
+) -> Option<Join> {
+    let resolution = tolerance.scaled(RESOLUTION);
+    let length = stretch[1] - stretch[0];
+    let feet = stretch.map(|s| {
+        let foot = b.curve.closest(&a.point_at(s));
+        b.lengths.length_at(foot.parameter)
+    });
+    let mut other = [feet[0].min(feet[1]), feet[0].max(feet[1])];
+    // Round a closed edge the feet of both ends may be one.
+    if other[1] - other[0] < 0.5 * length {
+        other = [0.0, b.lengths.total()];
+    }
+    let [first, second] = [(a, stretch), (b, other)].map(|(edge, s)| edge.part(s, resolution));
+    let (first, second) = (first?, second?);
+    let there = directed_distance_between(&first, &second, resolution);
+    let back = directed_distance_between(&second, &first, resolution);
+    let gap = there.max.max(back.max);
+    if gap > tolerance.length() {
+        return None;
+    }
+    let (knuckle_max, knuckle_mean) = knuckle(a, b, stretch);
+    Some(Join {
+        edges: [i, j],
+        stretches: [stretch, other],
+        length,
+        gap,
+        knuckle_max,
+        knuckle_mean,
+    })
+}
+
 /// Largest and mean angle along the first of two edges that meet.
-fn knuckle(a: &Edge<'_>, b: &Edge<'_>) -> (f64, f64) {
+fn knuckle(a: &Edge<'_>, b: &Edge<'_>, [from, to]: [f64; 2]) -> (f64, f64) {
     let (mut largest, mut sum, mut count) = (0.0, 0.0, 0.0);
     for k in 0..PLACES {
         let share = (k as f64 + 0.5) / PLACES as f64;
-        let u = a.lengths.parameter_at(share * a.lengths.total());
+        let u = a.lengths.parameter_at(from + (to - from) * share);
         let foot = b.curve.closest(&a.curve.curve().point(u));
         let (Some(p), Some(q)) = (a.inward(u), b.inward(foot.parameter)) else {
             continue;
@@ -135,16 +218,28 @@ impl Edge<'_> {
         &self.curve
     }
 
-    /// Whether boxes and ends allow these two to meet.
+    /// The place at a length from its start.
+    fn point_at(&self, length: f64) -> Point3<f64> {
+        self.curve.curve().point(self.lengths.parameter_at(length))
+    }
+
+    /// The part between two lengths from its start.
+    fn part(&self, [from, to]: [f64; 2], resolution: Tolerance) -> Option<CurveIndex> {
+        if from <= 0.0 && to >= self.lengths.total() {
+            return Some(self.curve.clone());
+        }
+        let [from, to] = [from, to].map(|s| self.lengths.parameter_at(s));
+        let part = self.curve.curve().restricted(from, to).ok()?;
+        Some(CurveIndex::with_resolution(&part, resolution))
+    }
+
+    /// Whether boxes allow these two to meet.
     fn may_meet(&self, other: &Edge<'_>, tolerance: f64) -> bool {
         let near = |k: usize| {
             self.bounds.min[k] <= other.bounds.max[k] + tolerance
                 && other.bounds.min[k] <= self.bounds.max[k] + tolerance
         };
-        let [a, b] = [self, other].map(|e| e.curve.curve());
-        let apart = |p: Point3<f64>, q: Point3<f64>| (p - q).norm() > tolerance;
-        let ends = |p, q| !apart(a.start(), p) && !apart(a.end(), q);
-        (0..3).all(near) && (ends(b.start(), b.end()) || ends(b.end(), b.start()))
+        (0..3).all(near)
     }
 
     /// The direction into the surface, square to the edge; none where the
@@ -215,6 +310,51 @@ mod tests {
             assert!((join.knuckle_mean - angle).abs() < 1e-7);
             assert!((join.gap - 1e-5).abs() < 1.1e-5 && (join.length - 4.0).abs() < 1e-12);
         }
+    }
+
+    /// Two short plates along the side of a long one that is bent, with a place
+    /// between them; a third that only touches it with a corner.
+    #[test]
+    fn parts_of_edges_meet() {
+        let arc = |from: f64, to: f64, height: f64| {
+            let at = |k: u32| from + (to - from) * f64::from(k) / 40.0;
+            let places: Vec<Point3<f64>> = (0..=40)
+                .map(|k| point![at(k), 0.1 * at(k) * at(k), height])
+                .collect();
+            let parameters: Vec<f64> = (0..=40).map(|k| f64::from(k) / 40.0).collect();
+            crate::geometry::interpolate_at(&parameters, &places, 3).unwrap()
+        };
+        let strip = |from: f64, to: f64, z: [f64; 2]| {
+            let sides = z.map(|z| arc(from, to, z));
+            let [low, high] = sides;
+            RuledSurface::new(low, high).unwrap().to_bspline().unwrap()
+        };
+        let surfaces = vec![
+            strip(0.0, 4.0, [0.0, 1.0]),
+            strip(0.0, 1.5, [1.0, 2.0]),
+            strip(3.5, 2.0, [2.0, 1.0]),
+            strip(4.0, 6.0, [1.0, 2.0]),
+        ];
+        let edges = edges(&surfaces, tolerance());
+        let found = joins(&edges, tolerance());
+        let pairs: Vec<[usize; 2]> = (found.iter())
+            .map(|j| j.edges.map(|e| edges[e].surface))
+            .collect();
+        assert_eq!(pairs, [[0, 1], [0, 2]]);
+        let long = &edges[found[0].edges[0]].lengths;
+        for (join, [from, to]) in found.iter().zip([[0.0, 1.5], [2.0, 3.5]]) {
+            let [from, to] = [from, to].map(|x| long.length_at(x / 4.0));
+            assert!((join.stretches[0][0] - from).abs() < 1e-4, "{join:?}");
+            assert!((join.stretches[0][1] - to).abs() < 1e-4);
+            assert!((join.length - (to - from)).abs() < 2e-4);
+            assert!(join.gap < 1e-4 && join.knuckle_max < 1e-3, "{join:?}");
+            let [start, end] = join.stretches[1];
+            assert!(start.abs() < 1e-4 && (end - join.length).abs() < 2e-4);
+        }
+        // The long one is open between and behind, so are all that are free.
+        let open = open(&edges, &found, tolerance());
+        assert_eq!(open.len(), edges.len() - 2);
+        assert!(open.contains(&found[0].edges[0]));
     }
 
     #[test]
