@@ -5,6 +5,11 @@
 //! `Dᵢ + s nᵢ`. On a developable surface both normals are one, the ruling moves
 //! parallel, and the result is the offset at distance s exactly; where the plate
 //! twists it is ruled between the offsets of its boundaries.
+//!
+//! Where a fan meets a part that twists, the normals jump by some degrees. Steel
+//! bends there as everywhere: the jump is spread evenly over a little of the
+//! plate on either side, so that the middle is as much longer or shorter as the
+//! whole bend makes it.
 
 use super::development::breaks;
 use crate::geometry::{RuledSurface, RulingJet, interpolate_at};
@@ -14,12 +19,14 @@ use nalgebra::{Point3, Vector3};
 /// cube of a thousandth what is left is below rounding of a drawing, the more so
 /// as only the way by half a thickness is not a spline already.
 const INTERVALS: usize = 1024;
-/// Normals on two sides of a knot that differ by more are those of a crease,
-/// radians.
-const CREASE: f64 = 1e-6;
+/// Normals on two sides of a knot that differ by more are those of a knuckle,
+/// radians: that is no bend but a joint.
+const KNUCKLE: f64 = 0.25;
+/// Over so much of the plate on either side a jump is spread.
+const SPREAD: f64 = 0.02;
 
 /// The surface at the distance `shift` along the normals `Su × Sv`. `None` where
-/// it has creases, at which an offset gapes or overlaps, or no normals.
+/// it has knuckles, at which an offset gapes or overlaps, or no normals.
 pub(super) fn offset(plate: &RuledSurface, shift: f64) -> Option<RuledSurface> {
     let knots = breaks(plate);
     let per_span = INTERVALS.div_ceil(knots.len().max(2) - 1);
@@ -29,20 +36,23 @@ pub(super) fn offset(plate: &RuledSurface, shift: f64) -> Option<RuledSurface> {
         places.extend((0..per_span).map(|i| span[0] + step * i as f64));
     }
     places.extend(knots.last());
-    if has_crease(plate, &knots)? {
-        return None;
-    }
-    let side = |v: f64| {
+    let side = |end: usize| {
+        let jumps = jumps(plate, &knots, end)?;
         let points: Option<Vec<Point3<f64>>> = (places.iter())
             .map(|u| {
                 let ruling = plate.ruling(*u);
-                Some(ruling.surface(v).point + normal(&ruling, v)? * shift)
+                let spread: Vector3<f64> = jumps.iter().map(|j| j.correction(*u)).sum();
+                let normal = normal(&ruling, END[end])? + spread;
+                Some(ruling.surface(END[end]).point + normal.try_normalize(0.0)? * shift)
             })
             .collect();
         interpolate_at(&places, &points?, 3).ok()
     };
-    RuledSurface::new(side(0.0)?, side(1.0)?).ok()
+    RuledSurface::new(side(0)?, side(1)?).ok()
 }
+
+/// v at the ends of a ruling.
+const END: [f64; 2] = [0.0, 1.0];
 
 fn normal(ruling: &RulingJet, v: f64) -> Option<Vector3<f64>> {
     let at = |v: f64| {
@@ -55,17 +65,41 @@ fn normal(ruling: &RulingJet, v: f64) -> Option<Vector3<f64>> {
     own.or_else(|| at(1.0 - v).try_normalize(0.0))
 }
 
-/// Whether normals jump at an inner knot.
-fn has_crease(plate: &RuledSurface, knots: &[f64]) -> Option<bool> {
-    let inner = knots.get(1..knots.len().max(2) - 1)?;
-    for u in inner {
-        for v in [0.0, 1.0] {
-            let left = normal(&plate.ruling_left(*u), v)?;
-            let right = normal(&plate.ruling(*u), v)?;
-            if left.cross(&right).norm().atan2(left.dot(&right)) > CREASE {
-                return Some(true);
-            }
-        }
+/// A place at which the normals jump.
+struct Jump {
+    at: f64,
+    /// From the normals before and behind to the one between them.
+    corrections: [Vector3<f64>; 2],
+    /// How far before and behind they are felt.
+    reach: [f64; 2],
+}
+
+impl Jump {
+    /// What is added to the normal at u.
+    fn correction(&self, u: f64) -> Vector3<f64> {
+        let side = usize::from(u >= self.at);
+        let share = 1.0 - (u - self.at).abs() / self.reach[side];
+        self.corrections[side] * share.max(0.0)
     }
-    Some(false)
+}
+
+/// The jumps along one boundary; `None` where one is a knuckle.
+fn jumps(plate: &RuledSurface, knots: &[f64], end: usize) -> Option<Vec<Jump>> {
+    let spread = SPREAD * (knots.last()? - knots.first()?);
+    let mut jumps = Vec::new();
+    for around in knots.windows(3) {
+        let at = around[1];
+        let before = normal(&plate.ruling_left(at), END[end])?;
+        let behind = normal(&plate.ruling(at), END[end])?;
+        if before.cross(&behind).norm().atan2(before.dot(&behind)) > KNUCKLE {
+            return None;
+        }
+        let between = (before + behind).try_normalize(0.0)?;
+        jumps.push(Jump {
+            at,
+            corrections: [between - before, between - behind],
+            reach: [spread.min(at - around[0]), spread.min(around[2] - at)],
+        });
+    }
+    Some(jumps)
 }

@@ -457,7 +457,7 @@ fn a_thick_cylinder_is_as_long_as_its_middle() {
 }
 
 #[test]
-fn a_thick_cone_keeps_its_angle_and_a_crease_has_no_middle() {
+fn a_thick_cone_keeps_its_angle_and_a_knuckle_has_no_middle() {
     // Radius z tan(30°) from z = 1 to 3: the offset is a cone of the same angle.
     let circle = |z: f64| {
         through(
@@ -481,18 +481,46 @@ fn a_thick_cone_keeps_its_angle_and_a_crease_has_no_middle() {
     close(opening(&thin), opening(&thick), 1e-7);
     let change = thick.figures.boundary_lengths[0] - thin.figures.boundary_lengths[0];
     close(change.abs(), 0.01 * (PI / 6.0).cos() * FRAC_PI_2, 1e-6);
-    // Two planes that meet along a ruling.
+    // Two planes that meet along a ruling at a right angle.
+    assert!(flatten_thick(&folded(FRAC_PI_2), &even(), &hull, 0.1, Face::Up).is_none());
+}
+
+/// Two planes of length 1 that meet along a ruling.
+fn folded(angle: f64) -> RuledSurface {
     let bent = |y: f64| {
         let points = vec![
             point![0.0, y, 0.0],
             point![1.0, y, 0.0],
-            point![1.0, y, 1.0],
+            point![1.0 + angle.cos(), y, angle.sin()],
         ];
         BSplineCurve::new(1, vec![0.0, 0.0, 0.5, 1.0, 1.0], points, None).unwrap()
     };
-    let plate = ruled(bent(0.0), bent(2.0));
+    ruled(bent(0.0), bent(2.0))
+}
+
+#[test]
+fn a_slight_crease_is_a_bend_like_any_other() {
+    let angle = 0.1;
+    let plate = folded(angle);
     let hull = HullFrame::around(std::slice::from_ref(&plate)).unwrap();
-    assert!(flatten_thick(&plate, &even(), &hull, 0.1, Face::Up).is_none());
+    let thickness = 0.05;
+    let lengths = [Face::Up, Face::Middle, Face::Down].map(|face| {
+        let flat = flatten_thick(&plate, &even(), &hull, thickness, face).unwrap();
+        assert!(
+            flat.figures.middle_strain_percent < 1e-3,
+            "{:?}",
+            flat.figures
+        );
+        flat.figures.boundary_lengths
+    });
+    close(lengths[1][0], 2.0, 1e-12);
+    // Half a thickness times the angle longer or shorter.
+    for (face, sign) in [(0, 1.0), (2, -1.0)] {
+        for length in lengths[face] {
+            close((length - 2.0).abs(), 0.5 * thickness * angle, 1e-5);
+            assert!((length - 2.0) * sign * (lengths[0][0] - 2.0) > 0.0);
+        }
+    }
 }
 
 /// The length of a ruling.

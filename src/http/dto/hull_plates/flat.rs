@@ -60,7 +60,7 @@ pub enum SideWord {
 
 /// `given`: the surface that is delivered, no thickness being given. `middle`:
 /// half the thickness from it, or where `surface_side` has it. `creased`: the
-/// surface that is delivered, though a thickness is given: at its creases the
+/// surface that is delivered, though a thickness is given: at its knuckles the
 /// middle gapes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -69,7 +69,7 @@ pub enum DevelopedWord {
     Given,
     /// The middle of the plate.
     Middle,
-    /// The surface as delivered, because of its creases.
+    /// The surface as delivered, because of its knuckles.
     Creased,
 }
 

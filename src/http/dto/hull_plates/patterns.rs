@@ -145,7 +145,7 @@ fn remarks(
         }
         DevelopedWord::Middle => "the middle of the plate: its thickness is allowed for.",
         DevelopedWord::Creased => {
-            "the surface through the profiles: the plate has creases, at which its thickness is \
+            "the surface through the profiles: the plate has knuckles, at which its thickness is \
              not allowed for."
         }
     };
