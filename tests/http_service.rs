@@ -42,7 +42,7 @@ async fn a_method_tells_options_with_default_unit_and_bounds() {
     assert_eq!(
         method["formats"],
         json!([
-            "json", "obj", "stl", "ply", "glb", "csv", "svg", "step", "igs", "zip"
+            "json", "obj", "stl", "ply", "glb", "csv", "svg", "step", "igs", "dxf", "zip"
         ])
     );
 }
