@@ -3,7 +3,7 @@
 
 use super::engine::Fitted;
 use super::ladder::Ladder;
-use super::minimax::{self, minimax};
+use super::minimax::{self, eighth_powers, minimax};
 use super::problem::Freedom;
 use super::request::Norm;
 use super::segments::Aim;
@@ -42,6 +42,10 @@ pub(super) fn best(
         return Ok(rung.fitted);
     }
     let freedom = ladder.freedom(patches);
+    if norm == Norm::EighthPowers {
+        let shape = (ladder.sample, &freedom);
+        return eighth_powers(&rung.fitted, shape, ladder.control);
+    }
     let all: Vec<&Fitted> = std::iter::once(&rung.fitted)
         .chain(&rung.others)
         .filter(|f| f.worth(ladder.sample).is_finite())

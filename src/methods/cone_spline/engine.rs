@@ -53,6 +53,8 @@ pub(super) struct Effort {
     pub(super) smoothing: f64,
     /// What lies within this distance hardly counts.
     pub(super) allowed: f64,
+    /// Powers of the distances, instead of their squares, are summed up.
+    pub(super) power: Option<f64>,
     /// Least 1 + gλ, where it is to be more than a roll asks for.
     pub(super) slowest: Option<f64>,
 }
@@ -64,6 +66,7 @@ impl Effort {
         reduction: 1e-7,
         smoothing: 0.0,
         allowed: 0.0,
+        power: None,
         slowest: None,
     };
 }
@@ -107,6 +110,13 @@ impl Fitted {
     /// Largest distance.
     pub(super) fn max(&self) -> f64 {
         self.distances.iter().fold(0.0_f64, |m, d| m.max(d.abs()))
+    }
+
+    /// Largest distance of the points that have a hold on the shape.
+    pub(super) fn max_held(&self, sample: &Sample) -> f64 {
+        let held = sample.weights.iter().zip(&self.distances);
+        let held = held.filter(|(w, _)| **w > 0.0);
+        held.fold(0.0_f64, |m, (_, d)| m.max(d.abs()))
     }
 
     /// Root mean square distance by the sample's weights.
@@ -269,6 +279,7 @@ impl Fitted {
         let mut problem = Problem::new(&self.chain, points, &self.before_apex, freedom);
         problem.smoothing = effort.smoothing;
         problem.allowed = effort.allowed;
+        problem.power = effort.power.map(|p| (p, self.max_held(sample)));
         problem.slowest = effort.slowest.unwrap_or(problem.slowest);
         let settings = Settings {
             iterations: effort.iterations,

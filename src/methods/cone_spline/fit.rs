@@ -27,6 +27,10 @@ const AGAIN: Effort = Effort {
 };
 /// Numbers of patches beyond the chosen one in the error curve.
 const BEYOND: usize = 2;
+/// Distances so many times those of the best developable are not its noise.
+const SHAPE: f64 = 2.0;
+/// To be worth larger squares the largest distance must fall to this share.
+const LOWER: f64 = 0.8;
 
 /// Fits patches to a strip that is made ready.
 ///
@@ -56,10 +60,11 @@ pub fn fit_target(
     control.progress("fitting", 40.0);
     let free = free(&request.options);
     let mut ladder = Ladder::new((&strip.sample, &segments), free, control);
-    let stage = Stage {
+    let mut stage = Stage {
         options: &request.options,
         strip: &strip,
         floor: &best,
+        norm: norm(&request.options),
     };
     let choice = stage.choose(&mut ladder)?;
     control.progress("measuring", 90.0);
@@ -118,25 +123,27 @@ struct Choice {
     reachable: bool,
 }
 
+/// What is made small at first.
+fn norm(options: &Options) -> Norm {
+    let by_goal = match options.goal {
+        Goal::Tolerance(_) => Norm::Minimax,
+        Goal::Pieces(_) | Goal::Noise => Norm::LeastSquares,
+    };
+    options.norm.unwrap_or(by_goal)
+}
+
 /// What the last stages share.
 struct Stage<'a> {
     options: &'a Options,
     strip: &'a Strip,
     floor: &'a Fitted,
+    norm: Norm,
 }
 
 impl Stage<'_> {
-    fn norm(&self) -> Norm {
-        let by_goal = match self.options.goal {
-            Goal::Tolerance(_) => Norm::Minimax,
-            Goal::Pieces(_) | Goal::Noise => Norm::LeastSquares,
-        };
-        self.options.norm.unwrap_or(by_goal)
-    }
-
     /// The chain that was asked for, with its neighbours in the ladder.
-    fn choose(&self, ladder: &mut Ladder) -> Result<Choice, FitError> {
-        let norm = self.norm();
+    fn choose(&mut self, ladder: &mut Ladder) -> Result<Choice, FitError> {
+        let norm = self.norm;
         let count = match self.options.goal {
             Goal::Pieces(k) => k.min(ladder.most()),
             Goal::Noise => count::for_noise(ladder)?,
@@ -149,12 +156,28 @@ impl Stage<'_> {
         ladder.solve(&around)?;
         ladder.improve(count)?;
         let mut fitted = count::best(ladder, count, norm, 0.0)?;
+        if self.is_by_shape(ladder, &fitted) {
+            let lower = count::best(ladder, count, Norm::EighthPowers, 0.0)?;
+            let [before, after] = [&fitted, &lower].map(|f| f.max_held(ladder.sample));
+            if after < LOWER * before && lower.worth(ladder.sample).is_finite() {
+                (fitted, self.norm) = (lower, Norm::EighthPowers);
+            }
+        }
         if self.options.simplify {
             let limit = self.limit(&fitted);
-            fitted = simplified(ladder, fitted, (self.options.classes, norm), limit)?;
+            fitted = simplified(ladder, fitted, (self.options.classes, self.norm), limit)?;
         }
         let fitted = self.near(ladder, fitted)?;
         Ok(self.judged(fitted))
+    }
+
+    /// Whether nobody said what is to be small and the distances come from too
+    /// few patches for the shape, not from noise, over which squares are right.
+    fn is_by_shape(&self, ladder: &Ladder, fitted: &Fitted) -> bool {
+        let options = self.options;
+        let open = matches!(options.goal, Goal::Pieces(_)) && options.norm.is_none();
+        let least = self.floor.rms(ladder.sample);
+        open && fitted.rms(ladder.sample) > SHAPE * least
     }
 
     /// Chains to turn to when the chosen one cannot be rolled: other minima of
@@ -163,7 +186,7 @@ impl Stage<'_> {
         let count = choice.fitted.chain.len();
         let rung = ladder.rung(count)?;
         let mut found: Vec<Fitted> = std::iter::once(rung.fitted).chain(rung.others).collect();
-        if self.norm() == Norm::Minimax {
+        if self.norm == Norm::Minimax {
             // What lies lowest comes first; what cannot be rolled so may be as
             // it was.
             let freedom = ladder.freedom(count);
@@ -175,7 +198,7 @@ impl Stage<'_> {
         if !matches!(self.options.goal, Goal::Pieces(_)) {
             let more = count + 1..=(count + MORE).min(ladder.most());
             for patches in more.chain((1..count).rev()) {
-                found.push(count::best(ladder, patches, self.norm(), 0.0)?);
+                found.push(count::best(ladder, patches, self.norm, 0.0)?);
             }
         }
         let mut choices = Vec::with_capacity(found.len());
@@ -198,7 +221,7 @@ impl Stage<'_> {
     fn near(&self, ladder: &Ladder, fitted: Fitted) -> Result<Fitted, FitError> {
         let limit = fitted.max() * (1.0 + ROUNDING);
         let shape = (ladder.sample, ladder.free);
-        let wishes = (self.options.classes, self.norm());
+        let wishes = (self.options.classes, self.norm);
         Ok(near(fitted, shape, wishes, limit, ladder.control)?)
     }
 
@@ -246,8 +269,9 @@ impl Stage<'_> {
                     Goal::Tolerance(_) => "the tolerance",
                     Goal::Noise => "the noise",
                 },
-                norm: match self.norm() {
+                norm: match self.norm {
                     Norm::LeastSquares => "least_squares",
+                    Norm::EighthPowers => "eighth_powers",
                     Norm::Minimax => "minimax",
                 },
                 noise: (self.options.goal == Goal::Noise).then(|| self.noise(&last)),
@@ -266,7 +290,7 @@ impl Stage<'_> {
             free[0] &= strain.g != 0.0;
             free[1] &= strain.k != 0.0;
         }
-        if self.norm() == Norm::Minimax && !self.options.robust {
+        if self.norm == Norm::Minimax && !self.options.robust {
             let kept = &self.strip.kept;
             return Ok(exchanged(fitted, (all, kept), &freedom, ladder.control)?);
         }
@@ -276,7 +300,11 @@ impl Stage<'_> {
             let kept = shares(&start.distances);
             weights.iter_mut().zip(kept).for_each(|(w, s)| *w *= s);
         }
-        Ok(start.weighted(all, &weights, (&freedom, AGAIN), ladder.control)?)
+        let again = Effort {
+            power: (self.norm == Norm::EighthPowers).then_some(8.0),
+            ..AGAIN
+        };
+        Ok(start.weighted(all, &weights, (&freedom, again), ladder.control)?)
     }
 
     /// Standard deviation of the points that count.

@@ -27,6 +27,7 @@ const STAGE: Effort = Effort {
     reduction: 1e-2,
     smoothing: 0.0,
     allowed: 0.0,
+    power: None,
     slowest: None,
 };
 /// The last stage.

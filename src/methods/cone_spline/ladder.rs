@@ -14,6 +14,7 @@ const RACE: Effort = Effort {
     reduction: 1e-3,
     smoothing: 0.0,
     allowed: 0.0,
+    power: None,
     slowest: None,
 };
 /// With few patches for its shape a strip is easily rolled up round an apex

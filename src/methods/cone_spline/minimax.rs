@@ -27,10 +27,34 @@ const TRY: Effort = Effort {
     reduction: 1e-3,
     smoothing: 0.0,
     allowed: 0.0,
+    power: None,
     slowest: None,
 };
 /// Largest distances below this are rounding.
 const EXACT: f64 = 1e-12;
+
+/// The least sum of eighth powers from the least squares, by way of the fourth.
+///
+/// # Errors
+/// When the control says so.
+pub(super) fn eighth_powers(
+    fitted: &Fitted,
+    (sample, freedom): (&Sample, &Freedom),
+    control: &dyn Control,
+) -> Result<Fitted, Stop> {
+    let mut best = fitted.clone();
+    for power in [4.0, 8.0] {
+        if best.max() <= EXACT {
+            break;
+        }
+        let effort = Effort {
+            power: Some(power),
+            ..Effort::FULL
+        };
+        best = best.relaxed(sample, freedom, effort, control)?;
+    }
+    Ok(best)
+}
 
 /// Lowers the largest distance from a least-squares fit, as far as it goes or
 /// to `enough`, in so many bisections at most.

@@ -32,7 +32,7 @@
 //!   and knows no planes. Here dynamic programming over the cost of every
 //!   interval finds the best division for every number of patches at once.
 //! * The largest distance is made least too, by a bisection over what is
-//!   allowed (`minimax`).
+//!   allowed (`minimax`), or nearly, by eighth powers of the distances.
 //! * A chain counts only if the area that the strip takes up on it is that of
 //!   the strip, and no ruling of a joint passes an apex; the returned cones are
 //!   measured, and joins of more than 1e-10 are not handed out.

@@ -75,6 +75,9 @@ pub(super) struct Problem<'a> {
     /// Distances up to this hardly count, and of larger ones what is beyond:
     /// least squares are then an end when all are within.
     pub(super) allowed: f64,
+    /// Sums of powers p > 2 of the distances instead of squares, distances in
+    /// this unit: (p, unit).
+    pub(super) power: Option<(f64, f64)>,
     /// Least 1 + gλ at the ends of a patch's rulings.
     pub(super) slowest: f64,
     columns: Columns,
@@ -124,6 +127,7 @@ impl<'a> Problem<'a> {
             lambda,
             smoothing: 0.0,
             allowed: 0.0,
+            power: None,
             slowest: SLOWEST,
             columns: Columns::new(freedom),
         }
@@ -221,12 +225,14 @@ impl<'a> Problem<'a> {
                 if derivatives {
                     let mut row = placed.row(point, patch);
                     for (distance, share) in counts {
-                        row[MOMENTS - 1] = distance;
-                        moments[patch].add(share * weights[i], &row);
+                        let [value, slope] = self.powered(distance);
+                        row[MOMENTS - 1] = value / slope;
+                        moments[patch].add(share * weights[i] * slope * slope, &row);
                     }
                 } else {
                     for (distance, share) in counts {
-                        moments[patch].add_distance(share * weights[i], distance);
+                        let [value, _] = self.powered(distance);
+                        moments[patch].add_distance(share * weights[i], value);
                     }
                 }
             }
@@ -241,6 +247,21 @@ impl<'a> Problem<'a> {
             sum.iter_mut().zip(run).for_each(|(s, m)| s.add_all(m));
         }
         sum
+    }
+
+    /// What stands for a distance, and its slope: of |d|^p the square root of
+    /// it, with the slope that gives p |d|^(p−1) as gradient, and, times a
+    /// constant, p (p − 1) |d|^(p−2) as curvature: Newton's steps.
+    fn powered(&self, distance: f64) -> [f64; 2] {
+        /// Least slope, of that at the unit: every patch stays held.
+        const HELD: f64 = 1e-4;
+        let Some((power, unit)) = self.power else {
+            return [distance, 1.0];
+        };
+        let half = (distance.abs() / unit).powf(0.5 * power - 1.0);
+        let value = distance * half * (0.5 * power / (power - 1.0)).sqrt();
+        let slope = half * (2.0 * (power - 1.0) / power).sqrt() * (0.5 * power);
+        [value, slope.max(HELD)]
     }
 
     /// What of a distance counts, and with which share of its weight.

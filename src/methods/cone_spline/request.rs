@@ -48,6 +48,9 @@ pub const MOST_PIECES: usize = 60;
 pub enum Norm {
     /// The sum of squared distances, by area.
     LeastSquares,
+    /// The sum of their eighth powers, by area: nearly the least largest
+    /// distance, and as sharply determined as the least squares.
+    EighthPowers,
     /// The largest distance of a vertex.
     Minimax,
 }
@@ -88,7 +91,8 @@ pub struct Options {
     /// How many patches.
     pub goal: Goal,
     /// What is made small. `None`: the largest distance for
-    /// [`Goal::Tolerance`], else the squares.
+    /// [`Goal::Tolerance`]; for [`Goal::Pieces`] eighth powers where the
+    /// distances come from the shape; else the squares.
     pub norm: Option<Norm>,
     /// Which kinds of patches may be used.
     pub classes: Classes,

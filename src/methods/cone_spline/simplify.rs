@@ -2,7 +2,7 @@
 
 use super::engine::{Effort, Fitted, Sample};
 use super::ladder::Ladder;
-use super::minimax::{ROUNDS, minimax};
+use super::minimax::{ROUNDS, eighth_powers, minimax};
 use super::problem::Freedom;
 use super::request::{Classes, Norm};
 use crate::geometry::cone::Strain;
@@ -15,6 +15,7 @@ const ATTEMPT: Effort = Effort {
     reduction: 1e-3,
     smoothing: 0.0,
     allowed: 0.0,
+    power: None,
     slowest: None,
 };
 
@@ -139,8 +140,13 @@ fn attempt(
     }
     let start = Fitted::settle(sample, &chain, &fitted.homes);
     let squares = start.relaxed(sample, freedom, ATTEMPT, control)?;
-    if norm == Norm::LeastSquares || squares.max() <= limit {
+    if squares.max() <= limit {
         return Ok(squares);
     }
-    minimax(&squares, (sample, freedom), (limit, ROUNDS), control)
+    let shape = (sample, freedom);
+    match norm {
+        Norm::LeastSquares => Ok(squares),
+        Norm::EighthPowers => eighth_powers(&squares, shape, control),
+        Norm::Minimax => minimax(&squares, shape, (limit, ROUNDS), control),
+    }
 }

@@ -63,7 +63,8 @@ pub struct ConeSplineOptions {
     #[schema(minimum = 1, maximum = 60, value_type = Option<u32>)]
     pub pieces: Option<Index>,
     /// What is made small. Without it the largest distance where a `tolerance`
-    /// is given, else the squares.
+    /// is given; with `pieces` eighth powers where the distances come from the
+    /// shape; else, and where they come from noise, the squares.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub norm: Option<NormOption>,
     /// Which kinds of patches may be used.
@@ -126,6 +127,8 @@ pub enum ConeSplineSolver {
 pub enum NormOption {
     /// The sum of squared distances, by area.
     LeastSquares,
+    /// The sum of their eighth powers: nearly the least largest distance.
+    EighthPowers,
     /// The largest distance of a vertex.
     Minimax,
 }

@@ -98,6 +98,7 @@ fn asked(o: &ConeSplineOptions, units: Units, faults: &mut Vec<FieldError>) -> O
         goal,
         norm: o.norm.map(|norm| match norm {
             NormOption::LeastSquares => Norm::LeastSquares,
+            NormOption::EighthPowers => Norm::EighthPowers,
             NormOption::Minimax => Norm::Minimax,
         }),
         classes: Classes {
