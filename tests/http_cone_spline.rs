@@ -194,8 +194,10 @@ async fn every_file_can_be_had() {
     assert!(svg.contains("Shoulder strake") && svg.contains("1 : ") && svg.contains("cone"));
     let step = file("step").await;
     assert_eq!(step.matches("ADVANCED_FACE").count(), patches);
-    // Its faces are trimmed to the strip: two sides of each are no rulings.
-    assert_eq!(step.matches("=PCURVE(").count(), 2 * patches);
+    // Its faces are trimmed to the strip: two sides of each are no rulings, nor
+    // need the strip's ends be.
+    let bent = step.matches("=PCURVE(").count();
+    assert!((2 * patches..=2 * patches + 2).contains(&bent), "{bent}");
     let iges = file("igs").await;
     let trimmed = iges.lines().filter(|l| l.starts_with("     144 "));
     assert_eq!(trimmed.count(), 2 * patches);

@@ -388,6 +388,9 @@ async fn a_thick_plate_is_laid_out_by_its_middle() {
         let result = service.get(&format!("{place}/result.json")).await.json();
         let flat = &result["method_specific"]["plates"][0]["flat"];
         assert_eq!(flat["developed"], "middle");
+        // Its fans and slight creases are no harm.
+        assert!(number(&flat["strain"]["twist_percent"]) < 0.05, "{flat}");
+        assert!(number(&flat["strain"]["boundary_percent"]) < 1e-6, "{flat}");
         lengths.push(number(&flat["boundary_lengths"][0]));
         let dxf = service.get(&format!("{place}/result.dxf")).await;
         let dxf = String::from_utf8_lossy(&dxf.body).into_owned();

@@ -481,6 +481,22 @@ fn a_thick_cone_keeps_its_angle_and_a_knuckle_has_no_middle() {
     close(opening(&thin), opening(&thick), 1e-7);
     let change = thick.figures.boundary_lengths[0] - thin.figures.boundary_lengths[0];
     close(change.abs(), 0.01 * (PI / 6.0).cos() * FRAC_PI_2, 1e-6);
+    // A whole cone keeps its tip, which moves along the axis.
+    let tip = BSplineCurve::line(Point3::origin(), Point3::origin(), 3).unwrap();
+    let plate = ruled(tip, circle(3.0));
+    let (thin, thick) = (
+        self::flat(&plate),
+        flatten_thick(&plate, &even(), &hull, 0.02, Face::Up).unwrap(),
+    );
+    for flat in [&thin, &thick] {
+        no_strain(&flat.figures);
+        close(flat.figures.boundary_lengths[0], 0.0, 1e-12);
+    }
+    let change = thick.figures.boundary_lengths[1] - thin.figures.boundary_lengths[1];
+    close(change.abs(), 0.01 * (PI / 6.0).cos() * FRAC_PI_2, 1e-6);
+    // The axial way is s / sin 30°, of which the ruling sees cos 30° less s cot 30°.
+    let longer = thin_length(&thick) - thin_length(&thin);
+    close(longer.abs(), 0.01 / (PI / 6.0).tan(), 1e-6);
     // Two planes that meet along a ruling at a right angle.
     assert!(flatten_thick(&folded(FRAC_PI_2), &even(), &hull, 0.1, Face::Up).is_none());
 }
