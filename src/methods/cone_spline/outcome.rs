@@ -286,7 +286,7 @@ pub struct Floor {
 pub struct Report {
     /// `"asked"`, `"the tolerance"`, `"the noise"`.
     pub pieces_from: &'static str,
-    /// `"least_squares"` or `"minimax"`.
+    /// `"least_squares"`, `"eighth_powers"` or `"minimax"`.
     pub norm: &'static str,
     /// Standard deviation of the vertices across the surface, where the number
     /// of patches follows from it.

@@ -27,7 +27,7 @@ pub struct ConeSplineDiagnostics {
     /// `asked`, `the tolerance` or `the noise`: where the number of patches
     /// comes from.
     pub pieces_from: String,
-    /// `least_squares` or `minimax`: what was made small.
+    /// `least_squares`, `eighth_powers` or `minimax`: what was made small.
     pub norm: String,
     /// Standard deviation of the vertices across the surface, where the number
     /// of patches follows from it; else null.
