@@ -49,8 +49,11 @@ pub struct UmbilicFigures {
     /// Mean |κ₁ − κ₂|, 1/length.
     pub mean_difference: f64,
     /// Patches that have an umbilic: the line that is bent more changes within
-    /// them, or the least difference is below [`UMBILIC`].
+    /// them, or the least difference is below [`UMBILIC`]. A flat patch has
+    /// none: in a plane every direction is one of curvature.
     pub patches: Vec<[usize; 2]>,
+    /// How many patches are flat.
+    pub flat: usize,
     /// Curvatures along u and v at every vertex, 1/length.
     pub curvatures: Vec<[f64; 2]>,
 }
@@ -97,6 +100,8 @@ pub const PLACES: [f64; 10] = [
 ];
 /// Differences of the curvatures below this share of their mean are umbilics.
 pub const UMBILIC: f64 = 1e-3;
+/// Curvatures that bend an edge of the net by less than this, radians, are none.
+const FLAT: f64 = 3e-5;
 /// A line of curvature is looked for where the curvatures differ by this share
 /// of their mean difference at least.
 const DEFINED: f64 = 0.05;
@@ -254,6 +259,11 @@ impl UmbilicFigures {
         let count = differences().count().max(1) as f64;
         let mean_difference = differences().sum::<f64>() / count;
         let scale = mean_difference.max(f64::MIN_POSITIVE);
+        let flattest = FLAT / surface.net().mean_edge();
+        let is_flat = |looks: &[([f64; 2], Bend)]| {
+            let most = looks.iter().map(|(_, b)| b.along.abs().max(b.across.abs()));
+            most.fold(0.0, f64::max) <= flattest
+        };
         let has_umbilic = |looks: &[([f64; 2], Bend)]| {
             let leads = |sign: f64| looks.iter().any(|(_, b)| sign * (b.along - b.across) > 0.0);
             let least = looks
@@ -262,7 +272,8 @@ impl UmbilicFigures {
                 .fold(f64::INFINITY, f64::min);
             (leads(1.0) && leads(-1.0)) || least < UMBILIC * scale
         };
-        let found = patches.iter().zip(&looks).filter(|(_, l)| has_umbilic(l));
+        let bent = patches.iter().zip(&looks).filter(|(_, l)| !is_flat(l));
+        let found = bent.filter(|(_, l)| has_umbilic(l));
         let nearest = patches
             .iter()
             .zip(&looks)
@@ -276,6 +287,7 @@ impl UmbilicFigures {
             least_difference,
             mean_difference,
             patches: found.map(|(patch, _)| *patch).collect(),
+            flat: looks.iter().filter(|l| is_flat(l)).count(),
             curvatures: (0..surface.vertices().len())
                 .map(|v| curvatures(surface, v))
                 .collect(),

@@ -137,6 +137,10 @@ fn umbilics(smooth: &Smooth) -> String {
         100.0 * u.least_difference.value
     );
     match u.patches.first() {
+        None if u.flat > 0 => format!(
+            "No umbilic; {} patches are flat, in which every direction is one of curvature.",
+            u.flat
+        ),
         None => format!("No umbilic; {nearest}."),
         Some([i, j]) => format!(
             "Umbilics in {} patches, the first in row {i}, column {j}; {nearest}. There the \

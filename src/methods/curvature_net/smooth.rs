@@ -132,6 +132,7 @@ impl UmbilicFigures {
             mean_difference: self.mean_difference / task.size,
             curvatures: curvatures.collect(),
             patches: self.patches,
+            flat: self.flat,
         }
     }
 }

@@ -41,6 +41,22 @@ fn four_models_become_nets_of_curvature_lines_and_keep_their_shape() {
 }
 
 #[test]
+fn a_plane_has_no_umbilics_that_matter() {
+    // Rows that are neither even nor square, in a plane that is not level.
+    let flat = super::models::grid([5, 5], [false, false], |u, v| {
+        let (x, y) = (3.0 * u + 0.2 * v * v, 0.3 * u * v + 2.0 * v);
+        [x, y, 0.3 * x - 0.1 * y]
+    });
+    let s = fitted(flat.clone());
+    let count = s.surface.layout().patches().count();
+    assert_eq!((s.umbilics.patches.len(), s.umbilics.flat), (0, count));
+    assert!(s.borders.max_torsion.value <= REACHED[1]);
+    let outcome = crate::methods::curvature_net::fit(&request(flat), &Unwatched);
+    let outcome = outcome.expect("a net");
+    assert!(outcome.within_limits, "{:?}", outcome.summary);
+}
+
+#[test]
 fn lines_run_along_the_principal_directions() {
     let s = fitted(vault());
     // Computed from first and second derivatives of the surface alone.
