@@ -128,9 +128,9 @@ impl<'a> Boundary<'a> {
     /// Finds the ramps and how tips move.
     fn smooth_out(&mut self) -> Option<()> {
         for i in 0..self.runs.len() {
-            let Run { knots, tip } = &self.runs[i];
+            let knots = self.runs[i].knots.clone();
             let [first, last] = [knots[0], knots[knots.len() - 1]];
-            if tip.is_some() {
+            if self.runs[i].tip.is_some() {
                 let before = match i.checked_sub(1) {
                     Some(_) => Some(self.normal(first, true)?),
                     None => None,
@@ -153,7 +153,7 @@ impl<'a> Boundary<'a> {
                 }
                 continue;
             }
-            for at in knots[1..knots.len() - 1].to_vec() {
+            for at in knots[1..knots.len() - 1].iter().copied() {
                 let [a, b] = [self.normal(at, true)?, self.normal(at, false)?];
                 if a.cross(&b).norm().atan2(a.dot(&b)) > KNUCKLE {
                     return None;

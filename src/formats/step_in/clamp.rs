@@ -83,7 +83,7 @@ fn transposed(rows: &[Vec<Vector4<f64>>]) -> Vec<Vec<Vector4<f64>>> {
 
 impl Net {
     fn clamped(self) -> Net {
-        self.from_the_start().reversed().from_the_start().reversed()
+        self.begun_anew().reversed().begun_anew().reversed()
     }
 
     fn reversed(mut self) -> Net {
@@ -94,7 +94,7 @@ impl Net {
     }
 
     /// The domain's first knot made full, what lies before it dropped.
-    fn from_the_start(mut self) -> Net {
+    fn begun_anew(mut self) -> Net {
         let degree = self.degree;
         let first = self.knots[degree];
         let begin = self.knots.partition_point(|k| *k < first);
