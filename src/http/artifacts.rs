@@ -6,7 +6,7 @@ use super::extract::{Asked, Id, Nothing, Owner};
 use super::file_query::{CuttingQuery, FileQuery};
 use super::methods::document::{self, PartFile};
 use super::methods::{Form, Format};
-use super::openapi::{Artifacts, OneArtifact, RawBytes};
+use super::openapi::{AnyFile, Artifacts, OneArtifact};
 use super::problem::{ApiError, Code, Success};
 use super::respond;
 use super::results::{self, Stored};
@@ -112,14 +112,14 @@ pub(super) async fn list(
             description = "The entity tag you know", nullable = false),
     ),
     responses(
-        (status = 200, description = "The file", content((inline(RawBytes) = "*/*")),
+        (status = 200, description = "The file", content((inline(AnyFile) = "*/*")),
             headers(
                 ("ETag" = String, description = "SHA-256 of the bytes"),
                 ("Content-Disposition" = String, description = "The file's name"),
                 ("Accept-Ranges" = String, description = "`bytes`"),
             )),
         (status = 206, description = "The bytes that `Range` asked for",
-            content((inline(RawBytes) = "*/*"))),
+            content((inline(AnyFile) = "*/*"))),
         (status = 304, description = "Unchanged"),
         OneArtifact,
     ),

@@ -3,7 +3,7 @@
 
 use super::Api;
 use super::extract::{Asked, Nothing};
-use super::openapi::{DocFiles, Everywhere, RawBytes};
+use super::openapi::{AnyFile, DocFiles, Everywhere};
 use super::problem::{ApiError, Code, Success};
 use super::respond;
 use axum::extract::{Path, State};
@@ -90,7 +90,7 @@ pub(super) async fn page(_: Asked<Nothing>) -> Result<Response, ApiError> {
     get, path = "/docs/{file}", tag = "service", operation_id = "docs_file",
     params(("file" = String, Path, description = "Its name", example = "swagger-ui.css")),
     responses(
-        (status = 200, description = "The file", content((inline(RawBytes) = "*/*"))),
+        (status = 200, description = "The file", content((inline(AnyFile) = "*/*"))),
         DocFiles,
     ),
 )]

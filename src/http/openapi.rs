@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use utoipa::openapi::example::ExampleBuilder;
 use utoipa::openapi::path::{Operation, PathItem};
 use utoipa::openapi::response::{Response, ResponseBuilder};
-use utoipa::openapi::schema::{KnownFormat, ObjectBuilder, Schema, SchemaFormat, Type};
+use utoipa::openapi::schema::{KnownFormat, ObjectBuilder, Schema, SchemaFormat, SchemaType, Type};
 use utoipa::openapi::{Content, HeaderBuilder, OpenApi, Ref, RefOr};
 use utoipa::{IntoResponses, OpenApi as _, PartialSchema, ToSchema};
 
@@ -129,6 +129,21 @@ impl PartialSchema for RawBytes {
 }
 
 impl ToSchema for RawBytes {}
+
+/// A file of any kind, for the document: some are JSON, and no string to those
+/// who take them apart.
+#[derive(Debug, Clone, Copy)]
+pub struct AnyFile;
+
+impl PartialSchema for AnyFile {
+    fn schema() -> RefOr<Schema> {
+        ObjectBuilder::new()
+            .schema_type(SchemaType::AnyValue)
+            .into()
+    }
+}
+
+impl ToSchema for AnyFile {}
 
 fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
     [

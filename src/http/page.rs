@@ -4,7 +4,7 @@
 
 use super::Api;
 use super::extract::{Asked, Nothing, Owner};
-use super::openapi::{DocFiles, Everywhere, RawBytes};
+use super::openapi::{AnyFile, DocFiles, Everywhere};
 use super::problem::{ApiError, Code, Success};
 use super::respond::{self, File};
 use crate::jobs::{JobId, QueueError};
@@ -105,7 +105,7 @@ async fn view(
             description = "The entity tag you know", nullable = false),
     ),
     responses(
-        (status = 200, description = "The file", content((inline(RawBytes) = "*/*"))),
+        (status = 200, description = "The file", content((inline(AnyFile) = "*/*"))),
         (status = 304, description = "Unchanged"),
         DocFiles,
     ),
