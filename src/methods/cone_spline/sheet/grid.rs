@@ -10,6 +10,10 @@ const ACROSS: usize = 9;
 const ROWS: usize = 24;
 /// Rows nearer to each other than this share of the patch's length are one.
 const CLOSEST: f64 = 1.0 / 96.0;
+/// Sharp corners nearer than this share of the length have one row.
+const SAME: f64 = 1e-9;
+/// Turns of an outline that are sharp corners, radians.
+const SHARP: f64 = 0.3;
 
 /// The places of a patch inside its outline in (s, λ); no distances yet. Rows
 /// stand at the corners of the outline and evenly between them, so that the
@@ -31,7 +35,8 @@ pub(super) fn of(link: &Link, outline: &[Point2<f64>]) -> Grid {
     grid
 }
 
-/// Where the rows are, increasing.
+/// Where the rows are, increasing: at all sharp corners, so that ends that are no
+/// rulings are followed, at the others and between where there is room.
 fn rows(outline: &[Point2<f64>]) -> Vec<f64> {
     let corners = || outline.iter().map(|p| p.x);
     let first = corners().fold(f64::INFINITY, f64::min);
@@ -40,18 +45,30 @@ fn rows(outline: &[Point2<f64>]) -> Vec<f64> {
         return Vec::new();
     }
     let even = (1..ROWS).map(|i| first + (last - first) * (i as f64 / ROWS as f64));
-    let mut wanted: Vec<f64> = corners().chain(even).collect();
-    wanted.sort_by(f64::total_cmp);
-    let closest = CLOSEST * (last - first);
-    let mut rows = vec![first];
+    let wanted = sharp_corners(outline).chain(corners()).chain(even);
+    let mut needed = sharp_corners(outline).count();
+    let mut rows = vec![first, last];
     for s in wanted {
-        let before = rows.last().copied().unwrap_or(first);
-        if s - before >= closest && last - s >= closest {
-            rows.push(s);
+        let closest = (last - first) * if needed > 0 { SAME } else { CLOSEST };
+        needed = needed.saturating_sub(1);
+        let at = rows.partition_point(|r| *r < s);
+        let behind = rows.get(at).is_none_or(|r| r - s >= closest);
+        if behind && at > 0 && s - rows[at - 1] >= closest {
+            rows.insert(at, s);
         }
     }
-    rows.push(last);
     rows
+}
+
+/// Where the outline turns sharply.
+fn sharp_corners(outline: &[Point2<f64>]) -> impl Iterator<Item = f64> {
+    let count = outline.len();
+    let at = move |i: usize| outline[i % count];
+    let is_sharp = move |i: &usize| {
+        let (a, b) = (at(*i) - at(i + count - 1), at(i + 1) - at(*i));
+        a.perp(&b).atan2(a.dot(&b)).abs() > SHARP
+    };
+    (0..count).filter(is_sharp).map(move |i| at(i).x)
 }
 
 /// Least and largest λ of the outline at s.
@@ -92,5 +109,11 @@ mod tests {
         assert_eq!(interval(&outline, 4.0), Some([0.0, 0.0]));
         assert_eq!(interval(&outline, 5.0), None);
         assert!(super::rows(&[]).is_empty());
+        // A corner near the end is no less one; a place on a side is.
+        let slanted = [[0.0, 0.0], [0.01, 3.0], [3.99, 3.1], [4.0, 3.0], [4.0, 0.0]];
+        let rows = super::rows(&slanted.map(Point2::from));
+        assert!(rows.contains(&0.01) && rows.contains(&3.99));
+        let straight = [[0.0, 0.0], [0.0, 3.0], [0.01, 3.0], [4.0, 3.0], [4.0, 0.0]];
+        assert!(!super::rows(&straight.map(Point2::from)).contains(&0.01));
     }
 }
