@@ -19,12 +19,9 @@ impl BSplineSurface {
     pub fn curve_over(&self, polyline: &[Point2<f64>]) -> Result<BSplineCurve, SplineError> {
         let mut line = polyline.to_vec();
         line.dedup();
-        let (Some(first), Some(last)) = (line.first(), line.last()) else {
+        let [first, .., last] = &line[..] else {
             return Err(SplineError::NoCurves);
         };
-        if line.len() < 2 {
-            return Err(SplineError::NoCurves);
-        }
         let [p, q] = self.degrees();
         let along_u = line.iter().all(|x| x.y == first.y);
         let along_v = line.iter().all(|x| x.x == first.x);

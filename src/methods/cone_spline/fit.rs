@@ -4,7 +4,7 @@ use super::count;
 use super::engine::{Effort, Fitted};
 use super::floor::floor;
 use super::ladder::Ladder;
-use super::minimax::exchanged;
+use super::minimax::{EIGHTH, exchanged};
 use super::outcome::{ErrorPoint, Floor, Outcome, Report};
 use super::report;
 use super::request::{Goal, MOST_PIECES, Norm, Options, Request};
@@ -301,7 +301,7 @@ impl Stage<'_> {
             weights.iter_mut().zip(kept).for_each(|(w, s)| *w *= s);
         }
         let again = Effort {
-            power: (self.norm == Norm::EighthPowers).then_some(8.0),
+            power: (self.norm == Norm::EighthPowers).then_some(EIGHTH),
             ..AGAIN
         };
         Ok(start.weighted(all, &weights, (&freedom, again), ladder.control)?)

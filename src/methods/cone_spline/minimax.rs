@@ -30,6 +30,8 @@ const TRY: Effort = Effort {
     power: None,
     slowest: None,
 };
+/// The power of distances whose sum is nearly their largest.
+pub(super) const EIGHTH: f64 = 8.0;
 /// Largest distances below this are rounding.
 const EXACT: f64 = 1e-12;
 
@@ -43,7 +45,7 @@ pub(super) fn eighth_powers(
     control: &dyn Control,
 ) -> Result<Fitted, Stop> {
     let mut best = fitted.clone();
-    for power in [4.0, 8.0] {
+    for power in [4.0, EIGHTH] {
         if best.max() <= EXACT {
             break;
         }

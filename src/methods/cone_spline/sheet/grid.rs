@@ -45,12 +45,11 @@ fn rows(outline: &[Point2<f64>]) -> Vec<f64> {
         return Vec::new();
     }
     let even = (1..ROWS).map(|i| first + (last - first) * (i as f64 / ROWS as f64));
-    let wanted = sharp_corners(outline).chain(corners()).chain(even);
-    let mut needed = sharp_corners(outline).count();
+    let needed = sharp_corners(outline).map(|s| (s, SAME));
+    let wanted = corners().chain(even).map(|s| (s, CLOSEST));
     let mut rows = vec![first, last];
-    for s in wanted {
-        let closest = (last - first) * if needed > 0 { SAME } else { CLOSEST };
-        needed = needed.saturating_sub(1);
+    for (s, share) in needed.chain(wanted) {
+        let closest = share * (last - first);
         let at = rows.partition_point(|r| *r < s);
         let behind = rows.get(at).is_none_or(|r| r - s >= closest);
         if behind && at > 0 && s - rows[at - 1] >= closest {
